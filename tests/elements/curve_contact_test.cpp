@@ -15,15 +15,25 @@ namespace {
 constexpr double pi = std::numbers::pi;
 const Frame<double> origin;
 
+/// The row where the contact has moved on from where it was.
+template <class E>
+double row_of(const E& element, const Frame<double>& i, const Frame<double>& j, CurvePlace& contact) {
+  double row;
+  element.follow_contact(i, j, contact);
+  element.phi(Arguments<double>{i, j, 0, {}, &contact}, &row);
+  return row;
+}
+/// From the given configuration.
 template <class E>
 double row_of(const E& element, const Frame<double>& i, const Frame<double>& j) {
-  double row;
-  element.phi(Arguments<double>{i, j, 0, {}}, &row);
-  return row;
+  CurvePlace contact = element.place();
+  return row_of(element, i, j, contact);
 }
 template <class E>
 std::string trouble_of(const E& element, const Frame<double>& i, const Frame<double>& j) {
-  const char* text = element.trouble(Arguments<double>{i, j, 0, {}});
+  CurvePlace contact = element.place();
+  element.follow_contact(i, j, contact);
+  const char* text = element.trouble(Arguments<double>{i, j, 0, {}, &contact});
   return text ? text : "";
 }
 
@@ -58,9 +68,10 @@ TEST(PointOnCurve, FollowsItsBranchThroughACrossing) {
   };
   const double start = curve.last() * 0.4, end = curve.last() * 0.6;
   pin.complete(origin, at(start));
+  CurvePlace contact = pin.place();
   for (double s = start; s < end; s += curve.last() / 500) {
-    EXPECT_NEAR(row_of(pin, origin, at(s)), 0, 1e-15);
-    EXPECT_NEAR(pin.parameter, s, 1e-9);
+    EXPECT_NEAR(row_of(pin, origin, at(s), contact), 0, 1e-15);
+    EXPECT_NEAR(contact.s_i, s, 1e-9);
   }
 }
 
@@ -70,9 +81,10 @@ TEST(PointOnCurve, SearchesAnewAfterAJump) {
   for (int k = 0; k < 40; ++k) ellipse.push_back({2 * std::cos(2 * pi * k / 40), std::sin(2 * pi * k / 40)});
   PointOnCurve<double> point{.curve = Curve<double>::spline(ellipse, SplineEnd::periodic)};
   point.complete(origin, make_frame(3.0, 0.0, 0.0));
-  EXPECT_NEAR(row_of(point, origin, make_frame(3.0, 0.0, 0.0)), -1, 1e-12);
-  EXPECT_NEAR(row_of(point, origin, make_frame(-5.0, 0.0, 0.0)), -3, 1e-12);
-  EXPECT_NEAR(row_of(point, origin, make_frame(0.0, 1.5, 0.0)), -0.5, 1e-12);
+  CurvePlace foot = point.place();
+  EXPECT_NEAR(row_of(point, origin, make_frame(3.0, 0.0, 0.0), foot), -1, 1e-12);
+  EXPECT_NEAR(row_of(point, origin, make_frame(-5.0, 0.0, 0.0), foot), -3, 1e-12);
+  EXPECT_NEAR(row_of(point, origin, make_frame(0.0, 1.5, 0.0), foot), -0.5, 1e-12);
 }
 
 TEST(PointOnCurve, GoesOnStraightBeyondOpenEnds) {

@@ -48,6 +48,7 @@ struct ConstraintCase {
   Coordinates q{}, qd{}, qdd{};
   Taylor<double> c;
   Vec2<double> ground;  ///< where the origin of the frames lies
+  CurvePlace contact = {};
 };
 
 template <class E>
@@ -61,7 +62,7 @@ ExactRows<E> exact_rows(const ConstraintCase<E>& x, const std::array<Exact, 6>& 
   const auto at = [&](std::size_t k) { return Exact(x.q[k]) + offset[k]; };
   const Frame<Exact> i = make_frame<Exact>(at(0), at(1), at(2)), j = make_frame<Exact>(at(3), at(4), at(5));
   ExactRows<E> rows;
-  x.element.phi(Arguments<Exact>{i, j, Exact(x.c.f) + value_offset, x.ground}, rows.data());
+  x.element.phi(Arguments<Exact>{i, j, Exact(x.c.f) + value_offset, x.ground, &x.contact}, rows.data());
   return rows;
 }
 

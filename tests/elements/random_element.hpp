@@ -145,6 +145,17 @@ void fill(E&, const FunctionField&, ParameterSource<S>&) {}
 template <class E, class S>
 void fill(E&, const FunctionPairField&, ParameterSource<S>&) {}
 
+/// Where curves of the element touch at these frames, searched for from the given configuration; of others no_contact.
+template <class E>
+CurvePlace found_contact(const E& element, const Frame<double>& i, const Frame<double>& j) {
+  CurvePlace contact;
+  if constexpr (SearchesCurve<E>) {
+    contact = element.place();
+    element.follow_contact(i, j, contact);
+  }
+  return contact;
+}
+
 /// An element that its own check() accepts, completed at the given frames.
 template <class E, class S>
 E random_element(ParameterSource<S>& source, const Frame<S>& i, const Frame<S>& j) {

@@ -5,6 +5,10 @@
 
 #include "catena/analysis/dynamics/dynamics_with_events.hpp"
 #include "catena/columns/energy.hpp"
+#include "catena/elements/constraints/cam_cam.hpp"
+#include "catena/elements/constraints/cam_flat.hpp"
+#include "catena/elements/constraints/point_on_curve.hpp"
+#include "catena/elements/constraints/translational.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 #include "oracles/redundant_mechanisms.hpp"
 
@@ -99,6 +103,45 @@ TEST_P(DynamicsCheckpoints, WholeTurnsAndJumps) {
   model->add_force("damper", damper, ground, 1);
   check(model, 3, 0.31, GetParam());
 }
+
+/// A cam of two lobes that turns freely between a flat face, two knife edges and a roller, which springs hold. Where
+/// they touch is a part of the state.
+std::shared_ptr<Model> four_followers() {
+  auto model = std::make_shared<Model>();
+  std::vector<Vec2<double>> points;
+  for (int k = 0; k < 48; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 48, r = 0.1 * (1 + 0.12 * std::cos(2 * angle));
+    points.push_back({r * std::cos(angle), r * std::sin(angle)});
+  }
+  const Curve<double> lobes = Curve<double>::spline(points, SplineEnd::periodic);
+  const double roller = 0.03;
+  const int cam = model->add_body("cam", {.mass = 2, .inertia = 0.02});
+  const int face = model->add_body("face", {.mass = 0.3, .inertia = 0.01, .position = {0, 0.088}});
+  const int edge = model->add_body("edge", {.mass = 0.2, .inertia = 0.01, .position = {-0.112, 0}});
+  const int wheel = model->add_body("wheel", {.mass = 0.4, .inertia = 0.01, .position = {0.112 + roller, 0}});
+  const int other = model->add_body("other", {.mass = 0.2, .inertia = 0.01, .position = {0, -0.088}});
+  model->add("pin", Revolute<>{}, ground, cam);
+  model->bodies[static_cast<std::size_t>(cam)].angular_velocity = 9;
+  model->bodies[static_cast<std::size_t>(cam)].angular_velocity_given = true;
+  const auto guide = [&](const char* name, int body, const Vec2<double>& along) {
+    model->add(name, Translational<>{.s_i = along, .axis_i = along}, ground, body);
+    SpringDamper<> spring;
+    spring.s_i = 5.0 * model->bodies[static_cast<std::size_t>(body)].position;
+    spring.k = 20;
+    model->add_force(std::string(name) + " spring", spring, ground, body);
+  };
+  guide("up", face, {0, 1});
+  guide("left", edge, {1, 0});
+  guide("right", wheel, {1, 0});
+  guide("down", other, {0, 1});
+  model->add("flat", CamFlat<>{.axis_j = {1, 0}, .curve = lobes}, cam, face);
+  model->add("knife", PointOnCurve<>{.curve = lobes}, cam, edge);
+  model->add("rolling", CamCam<>{.curve_i = lobes, .curve_j = Curve<double>::circle({}, roller)}, cam, wheel);
+  model->add("below", PointOnCurve<>{.curve = lobes}, cam, other);
+  return model;
+}
+
+TEST_P(DynamicsCheckpoints, SeveralCamContacts) { check(four_followers(), 1.5, 0.17, GetParam()); }
 
 std::string method_name(const ::testing::TestParamInfo<IntegrationMethod>& info) {
   return std::string(to_string(info.param));

@@ -15,6 +15,12 @@
 
 namespace catena {
 
+/// What elements see of a configuration, made once for it.
+struct Pose {
+  const Frame<double>* frames;           ///< of plan bodies, relative to their origins; the last one is the ground's
+  const CurvePlace* contacts = nullptr;  ///< where curves touch; of all elements that search, type after type
+};
+
 /// Structure: element e of the block occupies the rows first_row + e rows ... ; bodies are plan bodies.
 template <class E>
 struct ConstraintBlock {
@@ -27,6 +33,7 @@ struct ConstraintBlock {
   std::vector<int> constant_slot;  ///< slots of the entries +1 and -1, written once
   std::vector<double> constant;
   std::vector<int> joined_row;  ///< of elements that join others, which have no rows of their own
+  int first_contact = 0;        ///< in Pose::contacts, of the elements that search on curves: as the model lists them
 
   int size() const { return static_cast<int>(entry.size()); }
   int row(int e) const {
@@ -54,7 +61,6 @@ struct ConstraintData {
   std::vector<Taylor<double>> value;  ///< c(t), one an element where E::functions == 1
   std::vector<double> scale;          ///< 1/(2c) for squared forms, else empty
   std::vector<Timed> timed;           ///< elements whose value is a function of time
-  std::vector<E> loose;               ///< without rows, that search on curves: their searches are the evaluator's own
 };
 
 /// Phi_qi and Phi_qj of one element's published equations, dense, for reactions.
@@ -78,27 +84,26 @@ struct ConstraintOperations {
   using Data = ConstraintData<E>;
 
   /// out[row] = scale x Phi.
-  static void phi(const Block&, const Data&, const Frame<double>* frames, double* out);
+  static void phi(const Block&, const Data&, Pose pose, double* out);
   /// The varying entries of Phi_q into their slots.
-  static void jacobian(const Block&, const Data&, const Frame<double>* frames, double* values);
+  static void jacobian(const Block&, const Data&, Pose pose, double* values);
   /// out[row] = -Phi_t for the timed elements; other rows are left alone.
-  static void nu(const Block&, const Data&, const Frame<double>* frames, double* out);
+  static void nu(const Block&, const Data&, Pose pose, double* out);
   /// out[row] = gamma at the body velocities qd (three a body, plan order).
-  static void gamma(const Block&, const Data&, const Frame<double>* frames, const double* qd, double* out);
+  static void gamma(const Block&, const Data&, Pose pose, const double* qd, double* out);
   /// sum_r lambda_r scale d2Phi_r/dq2 of one element; lambda: multipliers of the solver's rows, size rows of the plan.
-  static ElementMatrix hessian(const Block&, const Data&, const Frame<double>* frames, const double* lambda, int e);
+  static ElementMatrix hessian(const Block&, const Data&, Pose pose, const double* lambda, int e);
   /// The second derivatives of all elements, weighted with lambda, added to their slots; see hessian_slots.hpp.
-  static void add_hessians(const Block&, const Data&, const Frame<double>* frames, const double* lambda, bool convex,
-                           const int* slot, double* values);
+  static void add_hessians(const Block&, const Data&, Pose pose, const double* lambda, bool convex, const int* slot,
+                           double* values);
   /// nullptr, or why the equations of one element are undefined at this configuration, as a phrase.
-  static const char* trouble(const Block&, const Data&, const Frame<double>* frames, int e);
+  static const char* trouble(const Block&, const Data&, Pose pose, int e);
   /// The place of one element on its curve, if that has ends.
-  static std::optional<CurveUse> curve_use(const Block&, const Data&, const Frame<double>* frames, int e);
+  static std::optional<CurveUse> curve_use(const Block&, const Data&, Pose pose, int e);
   /// Phi_q of one element.
-  static LocalJacobian<E> local_jacobian(const Block&, const Data&, const Frame<double>* frames, int e);
+  static LocalJacobian<E> local_jacobian(const Block&, const Data&, Pose pose, int e);
   /// Measured quantity of one element: exact derivatives along q(t) with the given qd and qdd (nullptr: zero).
-  static Measured measure(const Block&, const Data&, const Frame<double>* frames, const double* qd, const double* qdd,
-                          int e);
+  static Measured measure(const Block&, const Data&, Pose pose, const double* qd, const double* qdd, int e);
 };
 
 }  // namespace catena

@@ -25,16 +25,18 @@ template <class E>
 struct ElementFrames {
   Frame<double> i, j;
   Vec2<double> ground{};
+  const CurvePlace* contact = &no_contact;
 
-  ElementFrames(const ConstraintBlock<E>& block, const ConstraintData<E>& data, const Frame<double>* frames, int e) {
+  ElementFrames(const ConstraintBlock<E>& block, const ConstraintData<E>& data, Pose pose, int e) {
     const auto k = static_cast<std::size_t>(e);
     if constexpr (E::bodies == 1) {
-      i = frames[block.body_i[k]];
+      i = pose.frames[block.body_i[k]];
       ground = data.shift[k].i;
     } else {
-      i = shifted(frames[block.body_i[k]], data.shift[k].i);
-      j = shifted(frames[block.body_j[k]], data.shift[k].j);
+      i = shifted(pose.frames[block.body_i[k]], data.shift[k].i);
+      j = shifted(pose.frames[block.body_j[k]], data.shift[k].j);
     }
+    if constexpr (SearchesCurve<E>) contact = pose.contacts + block.first_contact + block.entry[k];
   }
 };
 
@@ -70,7 +72,7 @@ void derived_jacobian(const E& element, const ElementFrames<E>& f, double c, dou
     }
   }();
   D rows[E::rows];
-  element.phi(Arguments<D>{i, j, D(c), f.ground}, rows);
+  element.phi(Arguments<D>{i, j, D(c), f.ground, f.contact}, rows);
   for (int r = 0; r < E::rows; ++r) {
     for (int k = 0; k < columns; ++k) entries[r * columns + k] = rows[r].d[static_cast<std::size_t>(k)];
   }
@@ -82,7 +84,7 @@ void taylor_rows(const E& element, const ElementFrames<E>& f, const Rates& u, co
                  Taylor<double>* rows) {
   const auto i = moving(f.i, u.vx, u.vy, u.omega);
   const auto j = moving(f.j, v.vx, v.vy, v.omega);
-  element.phi(Arguments<Taylor<double>>{i, j, c, f.ground}, rows);
+  element.phi(Arguments<Taylor<double>>{i, j, c, f.ground, f.contact}, rows);
 }
 
 template <class E>
@@ -94,35 +96,34 @@ Rates rates_of(const std::vector<int>& body, const double* qd, int e) {
 }  // namespace detail
 
 template <class E>
-void ConstraintOperations<E>::phi(const Block& block, const Data& data, const Frame<double>* frames, double* out) {
+void ConstraintOperations<E>::phi(const Block& block, const Data& data, Pose pose, double* out) {
   double* row = out + block.first_row;
   for (int e = 0; e < block.size(); ++e, row += E::rows) {
-    const detail::ElementFrames<E> f(block, data, frames, e);
+    const detail::ElementFrames<E> f(block, data, pose, e);
     if constexpr (Joining<E>) {
       double part;
-      data.element[static_cast<std::size_t>(e)].phi(Arguments<double>{f.i, f.j, 0, f.ground}, &part);
+      data.element[static_cast<std::size_t>(e)].phi(Arguments<double>{f.i, f.j, 0, f.ground, f.contact}, &part);
       out[block.row(e)] += part;
       continue;
     }
-    data.element[static_cast<std::size_t>(e)].phi(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground},
-                                                  row);
+    data.element[static_cast<std::size_t>(e)].phi(
+        Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact}, row);
     if constexpr (HasSquaredValue<E>) row[0] *= detail::scale_at(data, e);
   }
 }
 
 template <class E>
-void ConstraintOperations<E>::jacobian(const Block& block, const Data& data, const Frame<double>* frames,
-                                       double* values) {
+void ConstraintOperations<E>::jacobian(const Block& block, const Data& data, Pose pose, double* values) {
   constexpr int varying = varying_entries<E>();
   if constexpr (varying > 0) {
     const int* slot = block.slot.data();
     for (int e = 0; e < block.size(); ++e, slot += varying) {
-      const detail::ElementFrames<E> f(block, data, frames, e);
+      const detail::ElementFrames<E> f(block, data, pose, e);
       const double c = detail::value_at(data, e).f, scale = detail::scale_at(data, e);
       const E& element = data.element[static_cast<std::size_t>(e)];
       double entries[jacobian_size<E>];
       if constexpr (HasClosedJacobian<E>) {
-        element.jacobian(Arguments<double>{f.i, f.j, c, f.ground}, entries);
+        element.jacobian(Arguments<double>{f.i, f.j, c, f.ground, f.contact}, entries);
         for (int k = 0; k < varying; ++k) {
           if constexpr (Joining<E>) {
             values[slot[k]] += entries[k];
@@ -143,11 +144,11 @@ void ConstraintOperations<E>::jacobian(const Block& block, const Data& data, con
 }
 
 template <class E>
-void ConstraintOperations<E>::nu(const Block& block, const Data& data, const Frame<double>* frames, double* out) {
+void ConstraintOperations<E>::nu(const Block& block, const Data& data, Pose pose, double* out) {
   if constexpr (E::functions > 0) {
     for (const auto& timed : data.timed) {
       const int e = timed.element;
-      const detail::ElementFrames<E> f(block, data, frames, e);
+      const detail::ElementFrames<E> f(block, data, pose, e);
       Taylor<double> rows[E::rows];
       detail::taylor_rows(data.element[static_cast<std::size_t>(e)], f, {}, {}, detail::value_at(data, e), rows);
       for (int r = 0; r < E::rows; ++r) out[block.row(e) + r] = -detail::scale_at(data, e) * rows[r].d;
@@ -156,20 +157,19 @@ void ConstraintOperations<E>::nu(const Block& block, const Data& data, const Fra
 }
 
 template <class E>
-void ConstraintOperations<E>::gamma(const Block& block, const Data& data, const Frame<double>* frames, const double* qd,
-                                    double* out) {
+void ConstraintOperations<E>::gamma(const Block& block, const Data& data, Pose pose, const double* qd, double* out) {
   double* row = out + block.first_row;
   for (int e = 0; e < block.size(); ++e, row += E::rows) {
-    const detail::ElementFrames<E> f(block, data, frames, e);
+    const detail::ElementFrames<E> f(block, data, pose, e);
     const Rates u = detail::rates_of<E>(block.body_i, qd, e);
     const Rates v = E::bodies == 2 ? detail::rates_of<E>(block.body_j, qd, e) : Rates{};
     const E& element = data.element[static_cast<std::size_t>(e)];
     if constexpr (Joining<E>) {
       double part;
-      element.gamma(Arguments<double>{f.i, f.j, 0, f.ground}, u, v, &part);
+      element.gamma(Arguments<double>{f.i, f.j, 0, f.ground, f.contact}, u, v, &part);
       out[block.row(e)] += part;
     } else if constexpr (HasClosedGamma<E>) {
-      element.gamma(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground}, u, v, row);
+      element.gamma(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact}, u, v, row);
     } else {
       Taylor<double> rows[E::rows];
       detail::taylor_rows(element, f, u, v, detail::value_at(data, e), rows);
@@ -181,7 +181,7 @@ void ConstraintOperations<E>::gamma(const Block& block, const Data& data, const 
   if constexpr (HasClosedGamma<E> && E::functions > 0) {
     for (const auto& timed : data.timed) {
       const int e = timed.element;
-      const detail::ElementFrames<E> f(block, data, frames, e);
+      const detail::ElementFrames<E> f(block, data, pose, e);
       Taylor<double> rows[E::rows];
       detail::taylor_rows(data.element[static_cast<std::size_t>(e)], f, {}, {}, detail::value_at(data, e), rows);
       for (int r = 0; r < E::rows; ++r) out[block.row(e) + r] -= detail::scale_at(data, e) * rows[r].dd;
@@ -190,16 +190,16 @@ void ConstraintOperations<E>::gamma(const Block& block, const Data& data, const 
 }
 
 template <class E>
-ElementMatrix ConstraintOperations<E>::hessian(const Block& block, const Data& data, const Frame<double>* frames,
-                                               const double* lambda, int e) {
+ElementMatrix ConstraintOperations<E>::hessian(const Block& block, const Data& data, Pose pose, const double* lambda,
+                                               int e) {
   using Inner = Dual<double, 6>;
   using Outer = Dual<Inner, 6>;
-  const detail::ElementFrames<E> f(block, data, frames, e);
+  const detail::ElementFrames<E> f(block, data, pose, e);
   const auto i = seed<Inner, 6>(seed<double, 6>(f.i, 0), 0);
   const auto j = seed<Inner, 6>(seed<double, 6>(f.j, 3), 3);
   Outer rows[E::rows];
   data.element[static_cast<std::size_t>(e)].phi(
-      Arguments<Outer>{i, j, Outer(Inner(detail::value_at(data, e).f)), f.ground}, rows);
+      Arguments<Outer>{i, j, Outer(Inner(detail::value_at(data, e).f)), f.ground, f.contact}, rows);
   ElementMatrix matrix{};
   for (int r = 0; r < E::rows; ++r) {
     const double weight = lambda[block.row(e) + r] * detail::scale_at(data, e);
@@ -211,21 +211,21 @@ ElementMatrix ConstraintOperations<E>::hessian(const Block& block, const Data& d
 }
 
 template <class E>
-void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data, const Frame<double>* frames,
-                                           const double* lambda, bool convex, const int* slot, double* values) {
+void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data, Pose pose, const double* lambda,
+                                           bool convex, const int* slot, double* values) {
   constexpr auto pattern = hessian_pattern<E>();
   constexpr auto written = written_hessian<E>();
   if constexpr (pattern.size() > 0) {
     for (int e = 0; e < block.size(); ++e, slot += written.size()) {
       double entries[pattern.size()];
       if constexpr (HasClosedHessian<E>) {
-        const detail::ElementFrames<E> f(block, data, frames, e);
+        const detail::ElementFrames<E> f(block, data, pose, e);
         double weights[E::rows];
         for (int r = 0; r < E::rows; ++r) weights[r] = lambda[block.row(e) + r] * detail::scale_at(data, e);
         data.element[static_cast<std::size_t>(e)].hessian(
-            Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground}, weights, entries);
+            Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact}, weights, entries);
       } else {
-        const ElementMatrix matrix = hessian(block, data, frames, lambda, e);
+        const ElementMatrix matrix = hessian(block, data, pose, lambda, e);
         for (std::size_t k = 0; k < pattern.size(); ++k) {
           entries[k] = matrix[static_cast<std::size_t>(6 * pattern[k].row + pattern[k].column)];
         }
@@ -236,34 +236,32 @@ void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data,
 }
 
 template <class E>
-const char* ConstraintOperations<E>::trouble(const Block& block, const Data& data, const Frame<double>* frames, int e) {
+const char* ConstraintOperations<E>::trouble(const Block& block, const Data& data, Pose pose, int e) {
   if constexpr (HasTrouble<E>) {
-    const detail::ElementFrames<E> f(block, data, frames, e);
+    const detail::ElementFrames<E> f(block, data, pose, e);
     return data.element[static_cast<std::size_t>(e)].trouble(
-        Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground});
+        Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact});
   } else {
     return nullptr;
   }
 }
 
 template <class E>
-std::optional<CurveUse> ConstraintOperations<E>::curve_use(const Block& block, const Data& data,
-                                                           const Frame<double>* frames, int e) {
+std::optional<CurveUse> ConstraintOperations<E>::curve_use(const Block& block, const Data& data, Pose pose, int e) {
   if constexpr (HasCurveUse<E>) {
     const E& element = data.element[static_cast<std::size_t>(e)];
     if (!element.can_leave_curve()) return {};
-    const detail::ElementFrames<E> f(block, data, frames, e);
-    return element.curve_use(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground});
+    const detail::ElementFrames<E> f(block, data, pose, e);
+    return element.curve_use(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact});
   } else {
     return {};
   }
 }
 
 template <class E>
-LocalJacobian<E> ConstraintOperations<E>::local_jacobian(const Block& block, const Data& data,
-                                                         const Frame<double>* frames, int e) {
+LocalJacobian<E> ConstraintOperations<E>::local_jacobian(const Block& block, const Data& data, Pose pose, int e) {
   LocalJacobian<E> local;
-  const detail::ElementFrames<E> f(block, data, frames, e);
+  const detail::ElementFrames<E> f(block, data, pose, e);
   detail::derived_jacobian(data.element[static_cast<std::size_t>(e)], f, detail::value_at(data, e).f,
                            local.entries.data());
   local.scale = detail::scale_at(data, e);
@@ -271,10 +269,10 @@ LocalJacobian<E> ConstraintOperations<E>::local_jacobian(const Block& block, con
 }
 
 template <class E>
-Measured ConstraintOperations<E>::measure(const Block& block, const Data& data, const Frame<double>* frames,
-                                          const double* qd, const double* qdd, int e) {
-  if constexpr (requires(const E& x, const Frame<double>& f) { x.measure(f, f); }) {
-    const detail::ElementFrames<E> f(block, data, frames, e);
+Measured ConstraintOperations<E>::measure(const Block& block, const Data& data, Pose pose, const double* qd,
+                                          const double* qdd, int e) {
+  if constexpr (Measuring<E>) {
+    const detail::ElementFrames<E> f(block, data, pose, e);
     const auto accelerated = [&](Frame<double> frame, const std::vector<int>& bodies) {
       const int body = bodies[static_cast<std::size_t>(e)];
       const Rates u = qd ? detail::rates_of<E>(bodies, qd, e) : Rates{};
@@ -293,7 +291,7 @@ Measured ConstraintOperations<E>::measure(const Block& block, const Data& data, 
     const Frame<double> fi = E::bodies == 1 ? detail::shifted(f.i, f.ground) : f.i;
     const auto i = accelerated(fi, block.body_i);
     const auto j = E::bodies == 2 ? accelerated(f.j, block.body_j) : Frame<Taylor<double>>{};
-    const Taylor<double> m = data.element[static_cast<std::size_t>(e)].measure(i, j);
+    const Taylor<double> m = measure_of(data.element[static_cast<std::size_t>(e)], i, j, *f.contact);
     return {m.f, m.d, m.dd};
   } else {
     return {};

@@ -55,14 +55,8 @@ void set_shift(Shift& shift, int body_i, int body_j, std::span<const Vec2<double
 
 template <class Block, class Data, class List>
 void load_constraints(const Block& block, Data& data, const List& list, std::span<const Vec2<double>> origin,
-                      int moving, std::span<const int> place) {
+                      int moving) {
   using E = ElementOf<decltype(list)>;
-  if constexpr (SearchesCurve<E>) {
-    data.loose.clear();
-    for (const auto& entry : list) {
-      if (place[at(entry.id)] < -1) data.loose.push_back(entry.element);
-    }
-  }
   const std::size_t n = at(block.size());
   data.element.resize(n);
   data.shift.resize(n);
@@ -131,23 +125,16 @@ Evaluator::Evaluator(std::shared_ptr<const Plan> plan, const Model& model) : pla
     const auto& block = std::get<ForceBlock<ElementOf<decltype(list)>>>(plan_->forces);
     for (int e = 0; e < block.size(); ++e) place_[at(list[at(block.entry[at(e)])].id)] = e;
   });
-  for_each_list(model.constraints, [&](const auto& list, int) {
-    if constexpr (SearchesCurve<ElementOf<decltype(list)>>) {
-      int loose = 0;
-      for (const auto& entry : list) {
-        if (place_[at(entry.id)] < 0) place_[at(entry.id)] = -2 - loose++;
-      }
-    }
-  });
+  starts_.resize(at(plan_->contacts));
   load_values();
+  go_to_given_curve_places();
 }
 
 void Evaluator::set_model(const Model& model) {
   require_same_structure(*model_, model, *plan_);
-  const std::vector<CurvePlace> places = curve_places();
   model_ = &model;
   load_values();
-  go_to_curve_places(places);
+  find_contacts();
 }
 
 void Evaluator::load_values() {
@@ -165,7 +152,7 @@ void Evaluator::load_values() {
     frames_[at(p)] = pose;
   }
   for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-    load_constraints(block, data, list, origin_, plan_->moving, place_);
+    load_constraints(block, data, list, origin_, plan_->moving);
   });
   for_each_list(model_->forces, [&](const auto& list, int) {
     using E = ElementOf<decltype(list)>;
@@ -236,6 +223,10 @@ void Evaluator::set_configuration(std::span<const double> q) {
   update_frames(q.first(at(3 * plan_->moving)), std::span(frames_).first(at(plan_->moving)));
   for (std::size_t b = 0; b < turns_.size(); ++b) frames_[b].phi += turns_[b] * (2 * std::numbers::pi);
   stretch_ropes();
+  if (!starts_.empty()) {
+    find_contacts();
+    starts_ = contacts_;
+  }
 }
 
 void Evaluator::take_turns(std::span<double> q) {
@@ -276,10 +267,10 @@ void Evaluator::leave_out(std::span<const int> rows) {
 
 void Evaluator::phi(std::span<double> out) {
   ++counters.phis;
-  for_each_present_block(
-      plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-        ConstraintOperations<ElementOf<decltype(list)>>::phi(block, data, frames_.data(), out.data());
-      });
+  for_each_present_block(plan_->blocks, values_, model_->constraints,
+                         [&](const auto& block, auto& data, const auto& list) {
+                           ConstraintOperations<ElementOf<decltype(list)>>::phi(block, data, pose(), out.data());
+                         });
   for (int r : left_out_) out[at(r)] = 0;
 }
 
@@ -300,7 +291,7 @@ void Evaluator::jacobian(std::span<double> values) {
   });
   for_each_present_block(
       plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-        ConstraintOperations<ElementOf<decltype(list)>>::jacobian(block, data, frames_.data(), values.data());
+        ConstraintOperations<ElementOf<decltype(list)>>::jacobian(block, data, pose(), values.data());
       });
   for (int k : left_out_slot_) values[at(k)] = 0;
 }
@@ -310,7 +301,7 @@ void Evaluator::nu(std::span<double> out) {
   std::fill(out.begin(), out.end(), 0.0);
   for_each_present_block(plan_->blocks, values_, model_->constraints,
                          [&](const auto& block, auto& data, const auto& list) {
-                           ConstraintOperations<ElementOf<decltype(list)>>::nu(block, data, frames_.data(), out.data());
+                           ConstraintOperations<ElementOf<decltype(list)>>::nu(block, data, pose(), out.data());
                          });
 }
 
@@ -318,7 +309,7 @@ void Evaluator::gamma(std::span<const double> qd, std::span<double> out) {
   ++counters.gammas;
   for_each_present_block(
       plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-        ConstraintOperations<ElementOf<decltype(list)>>::gamma(block, data, frames_.data(), qd.data(), out.data());
+        ConstraintOperations<ElementOf<decltype(list)>>::gamma(block, data, pose(), qd.data(), out.data());
       });
 }
 

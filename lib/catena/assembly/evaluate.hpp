@@ -147,19 +147,16 @@ class Evaluator {
   /// The place in use on a curve or table that has ends, with the nearer end in the ground frame; nothing for elements
   /// without one, or that do not use it at present.
   std::optional<CurveUse> curve_use(int element) const;
-  /// Where the contacts on curves are that were found last, of elements without equations as well: none for a mechanism
-  /// without curves.
-  void curve_places(std::vector<CurvePlace>& places) const;
-  std::vector<CurvePlace> curve_places() const {
-    std::vector<CurvePlace> places;
-    curve_places(places);
-    return places;
-  }
+  /// Where the contacts on curves are at this configuration, or where their searches begin next if that was told since:
+  /// of elements without equations as well, none for a mechanism without curves.
+  const std::vector<CurvePlace>& curve_places() const { return starts_; }
   /// The next searches begin at these places: at those of the accepted state, after a trial that was rejected. Elements
   /// that the list lacks go on from where they are; one that the model lacks throws std::invalid_argument.
-  void go_to_curve_places(std::span<const CurvePlace> places) const;
+  void go_to_curve_places(std::span<const CurvePlace> places);
+  /// The contact of curves of a constraint at this configuration; no_contact where it does not search for one.
+  CurvePlace contact(int element) const;
   /// The next searches begin where contacts are in the given configuration.
-  void go_to_given_curve_places() const;
+  void go_to_given_curve_places();
   /// Value of the element's function of time now: c, c', c''.
   Taylor<double> element_value(int element) const;
 
@@ -185,10 +182,9 @@ class Evaluator {
   std::array<double, 6> law_effect(int law, std::span<const double> qd) const;
   void stretch_ropes();
   Measured measure_released(int element, std::span<const double> qd) const;
-  template <class E>
-  const E& element_in_use(int element, const E& in_model) const;
-  /// Place of an element in its block; without rows -1, or of those that search on curves -2 - k: number k among the
-  /// loose ones of its type.
+  Pose pose() const { return {frames_.data(), contacts_.data()}; }
+  void find_contacts();
+  /// Place of an element in its block; without rows -1.
   template <class F>
   void with_element(int element, F&& f) const;
   int place(int element) const { return place_[static_cast<std::size_t>(element)]; }
@@ -200,7 +196,9 @@ class Evaluator {
   std::vector<double> mass_;           // per plan body
   std::vector<Vec2<double>> origin_;   // per plan body, and the ground's (0, 0)
   std::vector<Frame<double>> frames_;  // relative; the last one is the ground's
-  std::vector<int> turns_;             // per moving body, as taken by take_turns(); empty: none
+  // Pose::contacts, and where the searches for them begin: at those of the configuration before, unless they are told.
+  std::vector<CurvePlace> contacts_, starts_;
+  std::vector<int> turns_;  // per moving body, as taken by take_turns(); empty: none
   std::vector<Taylor<double>> function_;
   std::vector<CompiledLaw<double>> laws_;
   std::vector<int> place_;
@@ -260,7 +258,7 @@ void Evaluator::visit_constraint_hessians(std::span<const double> lambda, F&& f)
     const auto& data = std::get<ConstraintData<E>>(values_);
     for (int e = 0; e < block.size(); ++e) {
       f(block.body_i[static_cast<std::size_t>(e)], block.body_j[static_cast<std::size_t>(e)],
-        ConstraintOperations<E>::hessian(block, data, frames_.data(), lambda.data(), e));
+        ConstraintOperations<E>::hessian(block, data, pose(), lambda.data(), e));
     }
   });
 }

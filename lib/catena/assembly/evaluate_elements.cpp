@@ -6,6 +6,7 @@
 
 #include "catena/assembly/attachment_points.hpp"
 #include "catena/assembly/constraint_operations.hpp"
+#include "catena/assembly/curve_contacts.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
@@ -43,17 +44,6 @@ void Evaluator::with_element(int element, F&& f) const {
   });
 }
 
-// The element whose search goes on from the place found last: that of the evaluator, not of the model.
-template <class E>
-const E& Evaluator::element_in_use(int element, const E& in_model) const {
-  if constexpr (SearchesCurve<E>) {
-    const ConstraintData<E>& data = std::get<ConstraintData<E>>(values_);
-    const int e = place(element);
-    return e >= 0 ? data.element[at(e)] : data.loose[at(-2 - e)];
-  }
-  return in_model;
-}
-
 // A constraint that does not hold for the time being is in no block, but its measured quantity can be evaluated all the
 // same.
 Measured Evaluator::measure_released(int element, std::span<const double> qd) const {
@@ -66,9 +56,11 @@ Measured Evaluator::measure_released(int element, std::span<const double> qd) co
   };
   with_list(model_->constraints, record.type, [&](const auto& list) {
     const auto& entry = list[at(record.index)];
-    if constexpr (requires { entry.element.measure(Frame<double>{}, Frame<double>{}); }) {
-      using E = ElementOf<decltype(list)>;
-      const Taylor<double> m = element_in_use<E>(element, entry.element).measure(motion(entry.i), motion(entry.j));
+    using E = ElementOf<decltype(list)>;
+    if constexpr (Measuring<E>) {
+      const Taylor<double> m =
+          measure_of(entry.element, motion(entry.i), motion(entry.j),
+                     contact_of(std::get<ConstraintBlock<E>>(plan_->blocks), contacts_, record.index));
       result = {m.f, m.d, m.dd};
     }
   });
@@ -82,7 +74,7 @@ Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const do
     using E = ElementOf<decltype(list)>;
     if constexpr (E::rows == 1 && E::bodies == 2) {
       const auto& entry = list[at(record.index)];
-      const E& in_use = element_in_use<E>(element, entry.element);
+      const CurvePlace& contact = contact_of(std::get<ConstraintBlock<E>>(plan_->blocks), contacts_, record.index);
       const auto plan_body = [&](int body) { return body < 0 ? plan_->bodies : plan_->plan_body[at(body)]; };
       const int i = result.body_i = plan_body(entry.i), j = result.body_j = plan_body(entry.j);
       // About the origin of body i, so that rounding does not grow with the distance from the ground's.
@@ -90,12 +82,12 @@ Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const do
       const Frame<double> frame_j = detail::shifted(frames_[at(j)], origin_[at(j)] - origin_[at(i)]);
       const auto measure = [&]<class T>(const Frame<T>& fi, const Frame<T>& fj) {
         if constexpr (OneSided<E> && !Dry<E>) {
-          return in_use.measure(fi, fj);
+          return measure_of(entry.element, fi, fj, contact);
         } else {
           T row;
           T c(0.0);
           if constexpr (E::functions == 1) c = T(entry.values[0].constant);
-          in_use.phi(Arguments<T>{fi, fj, c, {}}, &row);
+          entry.element.phi(Arguments<T>{fi, fj, c, {}, &contact}, &row);
           return row;
         }
       };
@@ -127,7 +119,7 @@ Measured Evaluator::measure(int element, std::span<const double> qd, std::span<c
   } else {
     with_element(element, [&](const auto& block, const auto& data, int e) {
       using E = typename std::remove_cvref_t<decltype(block)>::Element;
-      result = ConstraintOperations<E>::measure(block, data, frames_.data(), qd.empty() ? nullptr : qd.data(),
+      result = ConstraintOperations<E>::measure(block, data, pose(), qd.empty() ? nullptr : qd.data(),
                                                 qdd.empty() ? nullptr : qdd.data(), e);
     });
   }
@@ -144,7 +136,7 @@ Evaluator::ElementJacobian Evaluator::element_jacobian(int element) const {
   ElementJacobian result;
   with_element(element, [&](const auto& block, const auto& data, int e) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    const LocalJacobian<E> local = ConstraintOperations<E>::local_jacobian(block, data, frames_.data(), e);
+    const LocalJacobian<E> local = ConstraintOperations<E>::local_jacobian(block, data, pose(), e);
     result.rows = E::rows;
     result.bodies = E::bodies;
     result.body_i = block.body_i[at(e)];
@@ -161,7 +153,7 @@ const char* Evaluator::trouble(int element) const {
   const char* phrase = nullptr;
   with_element(element, [&](const auto& block, const auto& data, int e) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    phrase = ConstraintOperations<E>::trouble(block, data, frames_.data(), e);
+    phrase = ConstraintOperations<E>::trouble(block, data, pose(), e);
   });
   return phrase;
 }
@@ -184,47 +176,49 @@ std::optional<CurveUse> Evaluator::curve_use(int element) const {
   } else {
     with_element(element, [&](const auto& block, const auto& data, int k) {
       using E = typename std::remove_cvref_t<decltype(block)>::Element;
-      take(block, k, ConstraintOperations<E>::curve_use(block, data, frames_.data(), k), std::type_identity<E>{});
+      take(block, k, ConstraintOperations<E>::curve_use(block, data, pose(), k), std::type_identity<E>{});
     });
   }
   if (use && use->end) use->end = ground_frame(body[use->body]).point(*use->end);
   return use;
 }
 
-void Evaluator::curve_places(std::vector<CurvePlace>& places) const {
-  places.clear();
-  for_each_list(model_->constraints, [&](const auto& list, int) {
-    using E = ElementOf<decltype(list)>;
-    if constexpr (SearchesCurve<E>) {
-      for (const auto& entry : list) {
-        CurvePlace& place = places.emplace_back(element_in_use<E>(entry.id, entry.element).place());
-        place.element = entry.id;
-      }
-    }
-  });
+void Evaluator::find_contacts() {
+  contacts_ = starts_;
+  follow_contacts(
+      *plan_, model_->constraints, origin_, [this](int body) { return frames_[at(body)]; }, contacts_);
 }
 
-void Evaluator::go_to_curve_places(std::span<const CurvePlace> places) const {
+CurvePlace Evaluator::contact(int element) const {
+  CurvePlace contact;
+  const ElementRecord& record = model_->elements[at(element)];
+  with_list(plan_->blocks, record.type,
+            [&](const auto& block) { contact = contact_of(block, contacts_, record.index); });
+  return contact;
+}
+
+void Evaluator::go_to_curve_places(std::span<const CurvePlace> places) {
+  bool moved = false;
   for (const CurvePlace& place : places) {
     if (place.element < 0 || at(place.element) >= place_.size())
       throw std::invalid_argument("a place on a curve is that of element number " + std::to_string(place.element) +
                                   ", which the model does not have: it has " + std::to_string(place_.size()));
     const ElementRecord& record = model_->elements[at(place.element)];
     if (record.kind == ElementKind::force) continue;
-    with_list(model_->constraints, record.type, [&](const auto& list) {
-      using E = ElementOf<decltype(list)>;
-      if constexpr (SearchesCurve<E>) element_in_use<E>(place.element, list[at(record.index)].element).go_to(place);
+    with_list(plan_->blocks, record.type, [&](const auto& block) {
+      if constexpr (SearchesCurve<typename std::remove_cvref_t<decltype(block)>::Element>) {
+        CurvePlace& start = starts_[at(block.first_contact + record.index)];
+        moved = moved || start.s_i != place.s_i || start.s_j != place.s_j;
+        start = place;
+      }
     });
   }
+  if (moved) find_contacts();
 }
 
-void Evaluator::go_to_given_curve_places() const {
-  for_each_list(model_->constraints, [&](const auto& list, int) {
-    using E = ElementOf<decltype(list)>;
-    if constexpr (SearchesCurve<E>) {
-      for (const auto& entry : list) element_in_use<E>(entry.id, entry.element).go_to(entry.element.place());
-    }
-  });
+void Evaluator::go_to_given_curve_places() {
+  take_given_contacts(*plan_, model_->constraints, starts_);
+  find_contacts();
 }
 
 Taylor<double> Evaluator::element_value(int element) const {

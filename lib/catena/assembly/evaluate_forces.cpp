@@ -107,8 +107,8 @@ void Evaluator::add_hessians(std::span<const double> lambda, Curvature curvature
   for_each_list(plan_->blocks, [&](const auto& block, int type) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     const auto add = [&](bool own, const int* slot, double* out) {
-      ConstraintOperations<E>::add_hessians(block, std::get<ConstraintData<E>>(values_), frames_.data(), lambda.data(),
-                                            own, slot, out);
+      ConstraintOperations<E>::add_hessians(block, std::get<ConstraintData<E>>(values_), pose(), lambda.data(), own,
+                                            slot, out);
     };
     constexpr auto written = written_hessian<E>();
     add_second_derivatives(written, convex, length_scale_, slots.constraints[at(type)], add, values);

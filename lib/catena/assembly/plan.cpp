@@ -81,6 +81,8 @@ template <class E>
 void number_rows(const Model& model, const std::vector<ElementEntry<E, double>>& list, ConstraintBlock<E>& block,
                  Plan& plan) {
   block.first_row = plan.rows;
+  block.first_contact = plan.contacts;
+  if constexpr (SearchesCurve<E>) plan.contacts += static_cast<int>(list.size());
   for (int e = 0; e < block.size(); ++e) {
     if (block.body_i[at(e)] < plan.bodies) plan.body_has_row[at(block.body_i[at(e)])] = 1;
     if (block.body_j[at(e)] < plan.bodies) plan.body_has_row[at(block.body_j[at(e)])] = 1;

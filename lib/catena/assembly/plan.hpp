@@ -58,6 +58,7 @@ struct Plan {
   int moving = 0;       ///< plan bodies 0 ... moving - 1 are solved for
   int columns = 0;      ///< unknown coordinates
   int rows = 0;         ///< constraint rows that are solved for
+  int contacts = 0;     ///< elements that search on curves, with rows or without
   int driver_rows = 0;  ///< those of drivers
   int islands = 0;
 

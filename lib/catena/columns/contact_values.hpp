@@ -49,7 +49,7 @@ S slip_now(const State& state, int element) {
   const auto index = static_cast<std::size_t>(state.model().elements[static_cast<std::size_t>(element)].index);
   const auto& entry = std::get<std::vector<ElementEntry<Contact<S>, S>>>(state.model().constraints)[index];
   const int i = plan_body(state.plan(), entry.i), j = plan_body(state.plan(), entry.j);
-  return slip_of(entry.element, state.frame(i), state.frame(j), state.twist(i), state.twist(j));
+  return slip_of(entry.element, state.frame(i), state.frame(j), state.foot(element), state.twist(i), state.twist(j));
 }
 
 /// Reactions of contacts and stops in motion: what presses need not be a multiplier, and what rubs is none of theirs.
@@ -66,7 +66,7 @@ void take_push(const State& state, int element, BasicElementReactions<S>& reacti
       const Frame<S> j = state.frame(plan_body(state.plan(), entry.j));
       Push<S> push;
       if constexpr (std::is_same_v<E, Contact<S>>) {
-        push = push_of(entry.element, i, j, S(load->force), S(load->friction));
+        push = push_of(entry.element, i, j, state.foot(element), S(load->force), S(load->friction));
       } else {
         push = push_of(entry.element, i, j, S(load->force));
       }

@@ -50,6 +50,7 @@ class DesignState {
     return {a[0], a[1], a[2]};
   }
 
+  CurvePlace foot(int element) const { return mechanism_.contact(element); }
   DesignScalar law_value(int law) const { return mechanism_.law_value(law); }
   DesignScalar residual() const { return snapshot_.residual; }
   DesignScalar work() const { return without_derivative(snapshot_.work); }

@@ -1,7 +1,8 @@
 // A snapshot as the templates over scalars see a state (row_values.hpp): in plain numbers.
 //
 // States have: Scalar, model(), plan(), time(), frame(plan body) in the ground frame, twist(plan body) and
-// acceleration(plan body) as three numbers, zero where they are not known, law_value(number) of a law of state.
+// acceleration(plan body) as three numbers, zero where they are not known, law_value(number) of a law of state,
+// foot(element): where the curve of a contact is touched or nearest.
 // `bodies` of the plan stands for the ground.
 #pragma once
 
@@ -23,6 +24,7 @@ class SnapshotState {
   Frame<double> frame(int plan_body) const { return s_.evaluator.ground_frame(plan_body); }
   Twist<double> twist(int plan_body) const { return three(s_.qd, plan_body); }
   Twist<double> acceleration(int plan_body) const { return three(s_.qdd, plan_body); }
+  CurvePlace foot(int element) const { return s_.evaluator.contact(element); }
   double law_value(int law) const { return s_.evaluator.law_value(law, s_.qd); }
 
  private:

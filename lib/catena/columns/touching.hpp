@@ -34,10 +34,9 @@ struct Touch {
 };
 
 template <class S>
-Touch<S> touch_of(const Contact<S>& contact, const Frame<S>& i, const Frame<S>& j) {
-  static_cast<void>(contact.measure(i, j));  // finds the foot
+Touch<S> touch_of(const Contact<S>& contact, const Frame<S>& i, const Frame<S>& j, const CurvePlace& foot) {
   const Vec2<S> x = i.to_local(j.point(contact.s_j) - i.origin());
-  S s(contact.place().s_i);
+  S s(foot.s_i);
   const CurvePoint<S> near = contact.curve.evaluate(s);
   const Vec2<S> off = near.p - x;
   s -= dot(off, near.d1) / S(value_of(squared_norm(near.d1)) + value_of(dot(off, near.d2)));
@@ -51,8 +50,9 @@ Touch<S> touch_of(const Contact<S>& contact, const Frame<S>& i, const Frame<S>& 
 }
 
 template <class S>
-S slip_of(const Contact<S>& contact, const Frame<S>& i, const Frame<S>& j, const Twist<S>& v_i, const Twist<S>& v_j) {
-  const Touch<S> touch = touch_of(contact, i, j);
+S slip_of(const Contact<S>& contact, const Frame<S>& i, const Frame<S>& j, const CurvePlace& foot, const Twist<S>& v_i,
+          const Twist<S>& v_j) {
+  const Touch<S> touch = touch_of(contact, i, j, foot);
   const auto velocity = [&](const Frame<S>& body, const Twist<S>& v) {
     return Vec2<S>{v.vx, v.vy} + v.omega * perpendicular(touch.place - body.origin());
   };
@@ -60,8 +60,9 @@ S slip_of(const Contact<S>& contact, const Frame<S>& i, const Frame<S>& j, const
 }
 
 template <class S>
-Push<S> push_of(const Contact<S>& contact, const Frame<S>& i, const Frame<S>& j, const S& pressing, const S& rubbing) {
-  const Touch<S> touch = touch_of(contact, i, j);
+Push<S> push_of(const Contact<S>& contact, const Frame<S>& i, const Frame<S>& j, const CurvePlace& foot,
+                const S& pressing, const S& rubbing) {
+  const Touch<S> touch = touch_of(contact, i, j, foot);
   const S along = touch.stretch * rubbing, arm = S(contact.free_side()) * contact.radius;
   return {pressing * touch.normal + along * touch.along, touch.place, arm * (rubbing - along)};
 }

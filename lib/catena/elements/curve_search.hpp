@@ -1,7 +1,7 @@
 // Newton's method along a curve, in plain numbers: how contact elements find the point where two bodies touch.
 //
-// A contact element keeps the parameter found last and starts from there, so that it follows one point of contact and
-// costs one or two evaluations of the curve; only where that fails does it search anew.
+// A search starts from the parameter found last, so that it follows one point of contact and costs one or two
+// evaluations of the curve; only where that fails does it look everywhere.
 #pragma once
 
 #include <cmath>

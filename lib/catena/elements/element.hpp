@@ -25,7 +25,8 @@
 //   check()                nullptr, or what is wrong with the parameters, as a phrase
 //   trouble(a)             nullptr, or why the row means nothing at this configuration, as a phrase
 //   can_leave_curve()      whether the element uses a curve or table that ends for good
-//   place(), go_to(p)      where it found the contact of curves last, and from where it searches next (CurvePlace)
+//   place()                where curves touch in the given configuration (CurvePlace)
+//   follow_contact(i, j, p)   moves the place p on to where they touch at these frames; all else finds it in a.contact
 //   curve_use(a)           where on it the element stands, if it asks anything of it (CurveUse)
 //   joins = true           it has no row of its own but adds to that of element `head`, of a type before it in the
 //   list;
@@ -50,6 +51,15 @@
 
 namespace catena {
 
+/// Where curves of the bodies of an element touch: their parameters, m. The search for a contact begins where it was
+/// found last, so that the place belongs to the state of a mechanism.
+struct CurvePlace {
+  int element = -1;  ///< its number in the model
+  double s_i = std::numeric_limits<double>::quiet_NaN(), s_j = 0;
+  bool is_regular = false;  ///< whether the search ended at a contact that has derivatives
+};
+inline constexpr CurvePlace no_contact{};
+
 /// Arguments of an element: the frames of its bodies (the ground frame where there is no body) and the value c.
 /// Frames may be given relative to any common origin; `ground` is where that origin lies, so that absolute elements
 /// subtract it together with their constant: rounding then does not grow with the distance from the ground's origin.
@@ -57,15 +67,9 @@ template <class T>
 struct Arguments {
   const Frame<T>& i;
   const Frame<T>& j;
-  T c;                  ///< value of the element's function of time
-  Vec2<double> ground;  ///< place of the frames' origin in the ground frame
-};
-
-/// Where an element found the point at which curves of its bodies touch: their parameters, m. The next search begins
-/// there, so that the place belongs to the state of a mechanism.
-struct CurvePlace {
-  int element = -1;  ///< its number in the model
-  double s_i = std::numeric_limits<double>::quiet_NaN(), s_j = 0;
+  T c;                                      ///< value of the element's function of time
+  Vec2<double> ground;                      ///< place of the frames' origin in the ground frame
+  const CurvePlace* contact = &no_contact;  ///< at these frames, of elements that search for one
 };
 
 /// Velocities of a body: vx, vy in m/s, omega in rad/s.
@@ -169,12 +173,28 @@ concept HasCurveUse = requires(const E& e) {
   e.can_leave_curve();
 };
 
-/// Searches for the point of contact from the place that it found last.
+/// Has a point of contact that is searched for, from the place where it was found last.
 template <class E>
-concept SearchesCurve = requires(const E& e, const CurvePlace& place) {
+concept SearchesCurve = requires(const E& e, const Frame<double>& f, CurvePlace& place) {
   { e.place() } -> std::same_as<CurvePlace>;
-  e.go_to(place);
+  e.follow_contact(f, f, place);
 };
+
+/// Says what its row is compared with: measure(i, j), of those that search with the place of the contact.
+template <class E>
+concept Measuring = requires(const E& e, const Frame<double>& f) {
+  e.measure(f, f);
+}
+|| requires(const E& e, const Frame<double>& f, const CurvePlace& contact) { e.measure(f, f, contact); };
+
+template <class E, class T>
+T measure_of(const E& element, const Frame<T>& i, const Frame<T>& j, const CurvePlace& contact) {
+  if constexpr (SearchesCurve<E>) {
+    return element.measure(i, j, contact);
+  } else {
+    return element.measure(i, j);
+  }
+}
 
 template <class E>
 concept HasSquaredValue = requires {

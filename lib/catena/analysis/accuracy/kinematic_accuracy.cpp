@@ -38,7 +38,7 @@ void KinematicAccuracy::keep(Row& row, const Snapshot& snapshot, std::span<const
   row.t = snapshot.t;
   row.q.assign(snapshot.q.begin(), snapshot.q.end());
   row.values.assign(values.begin(), values.end());
-  snapshot.evaluator.curve_places(row.curves);
+  row.curves = snapshot.evaluator.curve_places();
 }
 
 void KinematicAccuracy::take(const Snapshot& snapshot, std::span<const double> values) {
@@ -72,7 +72,7 @@ std::vector<double> KinematicAccuracy::digits(const AnalysisReport& report) {
   left_of_rates_ = std::max(analysis_.solver().left_of_rates(), Disturbance::epsilon * Disturbance::epsilon);
   left_of_multipliers_ = analysis_.solver().left_of_multipliers();
   last_.q.assign(analysis_.q().begin(), analysis_.q().end());
-  analysis_.evaluator().curve_places(last_.curves);
+  last_.curves = analysis_.evaluator().curve_places();
   kept_.unknown.assign(analysis_.evaluator().model().elements.size(), not_known);
   std::vector<double> examined;
   for (const Row* row : {&fastest_, &worst_, &middle_, &last_}) {

@@ -34,8 +34,7 @@ bool is_far(const BodyCurve<double>& curve, double from, double to) {
 }
 
 template <class E>
-bool has_jumped(const E& element, const CurvePlace& from) {
-  const CurvePlace place = element.place();
+bool has_jumped(const E& element, const CurvePlace& from, const CurvePlace& place) {
   if constexpr (requires { element.curve_j; }) {
     return is_far(element.curve_i, from.s_i, place.s_i) || is_far(element.curve_j, from.s_j, place.s_j);
   } else {
@@ -48,13 +47,21 @@ bool has_jumped(const E& element, const CurvePlace& from) {
 LaneSearches::LaneSearches(const LaneSearchedTypes& types, int moving) : types_(types), moving_(moving) {
   std::size_t type = 0;
   std::apply([&](auto&... list) { (list.resize(at(lane_count) * types_.of_type[type++].size()), ...); }, copies_);
+  contacts_.resize(at(lane_count * types_.count()));
 }
 
-// Calls f(copies, codes) for every type.
 template <class F>
-void LaneSearches::for_each_list_of_copies(F&& f) const {
-  std::size_t type = 0;
-  std::apply([&](const auto&... list) { (f(list, types_.of_type[type++]), ...); }, copies_);
+void LaneSearches::for_each_of_lane(int lane, F&& f) const {
+  std::size_t type = 0, number = at(lane);
+  const auto visit = [&](const auto& list) {
+    std::size_t place = at(lane);
+    for (const LaneSearched& code : types_.of_type[type++]) {
+      f(list[place], code, number);
+      place += at(lane_count);
+      number += at(lane_count);
+    }
+  };
+  std::apply([&](const auto&... list) { (visit(list), ...); }, copies_);
 }
 
 void LaneSearches::set_design(int lane, const Model& model) {
@@ -70,27 +77,23 @@ void LaneSearches::set_design(int lane, const Model& model) {
     ++type;
   };
   std::apply([&](auto&... list) { (copy(list), ...); }, copies_);
+  for_each_of_lane(lane,
+                   [&](const auto& element, const LaneSearched&, std::size_t k) { contacts_[k] = element.place(); });
 }
 
 void LaneSearches::go_to(const LaneNumbers& places) {
-  int number = 0;
-  for_each_list_of_copies([&](const auto& list, const auto&) {
-    for (std::size_t k = 0; k < list.size(); k += at(lane_count), number += 2) {
-      for (int lane = 0; lane < lane_count; ++lane)
-        list[k + at(lane)].go_to({-1, places[number][lane], places[number + 1][lane]});
-    }
-  });
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const int number = 2 * static_cast<int>(k / at(lane_count));
+    contacts_[k] = {-1, places[number][k % at(lane_count)], places[number + 1][k % at(lane_count)]};
+  }
 }
 
 void LaneSearches::keep_places(int lane, LaneNumbers& places) const {
   int number = 0;
-  for_each_list_of_copies([&](const auto& list, const auto&) {
-    for (std::size_t k = at(lane); k < list.size(); k += at(lane_count), number += 2) {
-      const CurvePlace place = list[k].place();
-      places[number][lane] = place.s_i;
-      places[number + 1][lane] = place.s_j;
-    }
-  });
+  for (std::size_t k = at(lane); k < contacts_.size(); k += at(lane_count), number += 2) {
+    places[number][lane] = contacts_[k].s_i;
+    places[number + 1][lane] = contacts_[k].s_j;
+  }
 }
 
 void LaneSearches::keep_places(LaneNumbers& places) const {
@@ -99,67 +102,60 @@ void LaneSearches::keep_places(LaneNumbers& places) const {
 
 void LaneSearches::take_places(std::span<const CurvePlace> found, int lane, LaneNumbers& places) const {
   int number = 0;
-  for_each_list_of_copies([&](const auto&, const auto& codes) {
-    for (const LaneSearched& code : codes) {
-      for (const CurvePlace& place : found) {
-        if (place.element != code.element) continue;
-        places[number][lane] = place.s_i;
-        places[number + 1][lane] = place.s_j;
-      }
-      number += 2;
+  for_each_of_lane(lane, [&](const auto&, const LaneSearched& code, std::size_t) {
+    for (const CurvePlace& place : found) {
+      if (place.element != code.element) continue;
+      places[number][lane] = place.s_i;
+      places[number + 1][lane] = place.s_j;
     }
+    number += 2;
   });
 }
 
 void LaneSearches::show_places(const LaneNumbers& places, int lane, std::vector<CurvePlace>& shown) const {
   shown.clear();
   int number = 0;
-  for_each_list_of_copies([&](const auto&, const auto& codes) {
-    for (const LaneSearched& code : codes) {
-      shown.push_back({code.element, places[number][lane], places[number + 1][lane]});
-      number += 2;
-    }
+  for_each_of_lane(lane, [&](const auto&, const LaneSearched& code, std::size_t) {
+    shown.push_back({code.element, places[number][lane], places[number + 1][lane]});
+    number += 2;
   });
 }
 
 const char* LaneSearches::trouble(const double* frame, const LaneNumbers& from, int lane) const {
   const char* found = nullptr;
   int number = 0;
-  for_each_list_of_copies([&](const auto& list, const auto& codes) {
-    std::size_t place = at(lane);
-    for (const LaneSearched& code : codes) {
-      const auto& element = list[place];
-      const Frame<double> i = frame_of(frame, code.body_i, lane), j = frame_of(frame, code.body_j, lane);
-      if (!is_somewhere(i) || !is_somewhere(j) || element.trouble(Arguments<double>{i, j, 0, {}}))
-        found = "a contact of curves is undefined";
-      else if (has_jumped(element, {-1, from[number][lane], from[number + 1][lane]}))
-        found = "a contact of curves jumps";
-      place += at(lane_count);
-      number += 2;
-    }
+  for_each_of_lane(lane, [&](const auto& element, const LaneSearched& code, std::size_t k) {
+    const Frame<double> i = frame_of(frame, code.body_i, lane), j = frame_of(frame, code.body_j, lane);
+    if (!is_somewhere(i) || !is_somewhere(j) || element.trouble(Arguments<double>{i, j, 0, {}, &contacts_[k]}))
+      found = "a contact of curves is undefined";
+    else if (has_jumped(element, {-1, from[number][lane], from[number + 1][lane]}, contacts_[k]))
+      found = "a contact of curves jumps";
+    number += 2;
   });
   return found;
 }
 
 template <class E>
-void LaneSearches::evaluate(const E& element, const LaneSearched& code, const LaneJob& job, LaneSearch what,
-                            int lane) const {
+void LaneSearches::evaluate(const E& element, const LaneSearched& code, const LaneJob& job, LaneSearch what, int lane,
+                            CurvePlace& contact) const {
   double& row = job.right[lane_count * code.row + lane];
   const Frame<double> i = frame_of(job.frame, code.body_i, lane), j = frame_of(job.frame, code.body_j, lane);
   if (!is_somewhere(i) || !is_somewhere(j)) {
     row = std::numeric_limits<double>::quiet_NaN();
     return;
   }
+  // At the frames of the residual before.
   if (what == LaneSearch::gamma) {
     const auto rates = [&](int body) { return body < moving_ ? job.qd + 3 * lane_count * body : nullptr; };
     const auto moving_i = moving_frame(i, rates(code.body_i), lane),
                moving_j = moving_frame(j, rates(code.body_j), lane);
     Taylor<double> phi;
-    element.phi(Arguments<Taylor<double>>{moving_i, moving_j, {}, {}}, &phi);
+    element.phi(Arguments<Taylor<double>>{moving_i, moving_j, {}, {}, &contact}, &phi);
     row = -phi.dd;
     return;
   }
-  const Arguments<double> a{i, j, 0, {}};
+  element.follow_contact(i, j, contact);
+  const Arguments<double> a{i, j, 0, {}, &contact};
   element.phi(a, &row);
   if (what == LaneSearch::residual) return;
   double entries[6];
@@ -168,15 +164,12 @@ void LaneSearches::evaluate(const E& element, const LaneSearched& code, const La
 }
 
 void LaneSearches::search(const LaneJob& job, LaneSearch what, int first, int count) {
-  const LaneSearches& searches = *job.searches;
-  searches.for_each_list_of_copies([&](const auto& list, const auto& codes) {
-    std::size_t place = 0;
-    for (const LaneSearched& code : codes) {
-      for (int lane = first; lane < first + count; ++lane)
-        searches.evaluate(list[place + at(lane)], code, job, what, lane);
-      place += at(lane_count);
-    }
-  });
+  LaneSearches& searches = *job.searches;
+  for (int lane = first; lane < first + count; ++lane) {
+    searches.for_each_of_lane(lane, [&](const auto& element, const LaneSearched& code, std::size_t k) {
+      searches.evaluate(element, code, job, what, lane, searches.contacts_[k]);
+    });
+  }
 }
 
 }  // namespace catena

@@ -3,8 +3,9 @@
 //
 //   Phi, Phi_q, gamma at the frames of a lane      place: s_i, s_j, where the contact was found last
 //
-// Every lane has its own copy of every such element. It searches from the place that belongs to the state of the lane,
-// so that a step that is not taken leaves no trace. A row is not a number where its bodies are nowhere. Units m, rad.
+// Every lane has its own copy of every such element, and its contact. It searches from the place that belongs to the
+// state of the lane, so that a step that is not taken leaves no trace. A row is not a number where its bodies are
+// nowhere. Units m, rad.
 #pragma once
 
 #include <array>
@@ -71,20 +72,24 @@ class LaneSearches {
   void take_places(std::span<const CurvePlace> found, int lane, LaneNumbers& places) const;
   /// The same the other way round.
   void show_places(const LaneNumbers& places, int lane, std::vector<CurvePlace>& shown) const;
-  /// Why a row means nothing at the frames of a lane, to which it came from other places; nullptr: it does.
+  /// Why a row means nothing at the frames that a lane was solved at, to which it came from other places; nullptr: it
+  /// does.
   const char* trouble(const double* frame, const LaneNumbers& from, int lane) const;
   /// What kernels ask for (LaneJob::search).
   static void search(const LaneJob& job, LaneSearch what, int first, int count);
 
  private:
+  /// Calls f(element, code, k) for every element of a lane; k: its place in contacts_.
   template <class F>
-  void for_each_list_of_copies(F&& f) const;
+  void for_each_of_lane(int lane, F&& f) const;
   template <class E>
-  void evaluate(const E& element, const LaneSearched& code, const LaneJob& job, LaneSearch what, int lane) const;
+  void evaluate(const E& element, const LaneSearched& code, const LaneJob& job, LaneSearch what, int lane,
+                CurvePlace& contact) const;
 
   const LaneSearchedTypes& types_;
   int moving_;
   LaneSearchedElements::Copies copies_;  // element after element, lane_count of each
+  std::vector<CurvePlace> contacts_;     // type after type, likewise
 };
 
 }  // namespace catena

@@ -159,7 +159,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
       values.clear();
       if (!of.empty()) values.assign(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(3 * body_.size()));
     };
-    s.evaluator.curve_places(row.curves);
+    row.curves = s.evaluator.curve_places();
     for (CurvePlace& place : row.curves) place.element = part_.elements[at(place.element)];
     take(row.q, s.q);
     take(row.qd, s.qd);

@@ -256,7 +256,7 @@ void Dynamics::remember() {
   memory_.integrator = integrator_->memory();
   memory_.left_out = equations_.left_out();
   memory_.earlier = work_.earlier;
-  evaluator_.curve_places(memory_.curves);
+  memory_.curves = evaluator_.curve_places();
 }
 
 void Dynamics::resume(const MotionMemory& memory) {

@@ -127,7 +127,7 @@ Report Kinematics::follow_to(double t) {
     remember_margins();
   }
   now_.on_bridge = false;
-  if (curves_.found.empty()) evaluator_.curve_places(curves_.found);
+  if (curves_.found.empty()) curves_.found = evaluator_.curve_places();
   while (now_.t != t) {
     // A curve that ends must not be left and reached again within a step.
     if (watched_.has_ends()) pace.step = std::min(pace.step, span / steps_to_a_row);
@@ -169,7 +169,7 @@ Report Kinematics::take_step(double next, double target, Pace& pace) {
   now_.has_velocity = now_.has_acceleration = pace.ignore_dips = false;
   ++evaluator_.counters.steps;
   ++pace.made_since_failure;
-  evaluator_.curve_places(curves_.found);
+  curves_.found = evaluator_.curve_places();
   remember_margins();
   if (rows_.has_redundant_rows()) {
     if (Report consistent = rows_.check_places(here()); !consistent.ok()) return consistent;

@@ -313,7 +313,7 @@ void Kinematics::leave_bridge(double end) {
   stretch_.bridge.clear();
   now_.on_bridge = false;
   solver_.factor_at(now_.q);
-  evaluator_.curve_places(curves_.found);
+  curves_.found = evaluator_.curve_places();
   margins_.clear();
   remember_margins();
   choose_better_rows();

@@ -266,7 +266,7 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
     if (!least_.velocity(t_, leg.direction > 0 ? Side::after : Side::before, q_, stage_[0])) {
       return t_ == started_ ? no_velocity() : stuck(t);
     }
-    evaluator_.curve_places(curve_places_);
+    curve_places_ = evaluator_.curve_places();
     leg.rate = least_.size(stage_[0]);
     if (step_ == 0) {
       step_ =

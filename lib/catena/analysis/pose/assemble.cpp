@@ -110,7 +110,7 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     }
     double factor = turn > largest_turn_of_a_step ? largest_turn_of_a_step / turn : 1;
     double then = 0;
-    evaluator_.curve_places(curve_places_);
+    curve_places_ = evaluator_.curve_places();
     for (; factor >= thresholds::smallest_factor; factor /= 2) {
       // A trial that was rejected may have found contacts far from here.
       evaluator_.go_to_curve_places(curve_places_);

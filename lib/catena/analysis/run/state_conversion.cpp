@@ -27,7 +27,7 @@ void check_values(const Model& model, std::span<const double> values, const char
 
 }  // namespace
 
-void take_over_places(const Evaluator& evaluator, const SystemState& state, std::span<double> q) {
+void take_over_places(Evaluator& evaluator, const SystemState& state, std::span<double> q) {
   if (!std::isfinite(state.t)) throw std::invalid_argument("the state's time is not finite");
   check_values(evaluator.model(), state.q, "places");
   check_values(evaluator.model(), state.qd, "velocities");
@@ -56,7 +56,7 @@ Frame<double> frame_of(const Evaluator& evaluator, std::span<const double> q, in
   return f;
 }
 
-std::vector<double> configuration_of(const Evaluator& evaluator, const SystemState& state) {
+std::vector<double> configuration_of(Evaluator& evaluator, const SystemState& state) {
   std::vector<double> q = evaluator.given_configuration();
   take_over_places(evaluator, state, q);
   return q;
@@ -83,7 +83,7 @@ SystemState state_of(const Evaluator& evaluator, double t, std::span<const doubl
     state.q[target + 2] = q[source + 2];
     if (!qd.empty()) std::copy_n(&qd[source], 3, &state.qd[target]);
   }
-  evaluator.curve_places(state.curves);
+  state.curves = evaluator.curve_places();
   return state;
 }
 

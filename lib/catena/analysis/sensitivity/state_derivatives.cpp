@@ -64,9 +64,8 @@ void StateDerivatives::leave_out_parameter(Group& group, std::size_t p, int row)
 }
 
 void StateDerivatives::lift_state(Group& group, const Snapshot& snapshot) {
-  snapshot.evaluator.curve_places(curve_places_);
-  evaluator_.go_to_curve_places(curve_places_);
-  group.mechanism.go_to_curve_places(curve_places_);
+  evaluator_.go_to_curve_places(snapshot.evaluator.curve_places());
+  group.mechanism.go_to_curve_places(snapshot.evaluator.curve_places());
   group.mechanism.lift_configuration(snapshot.q, group.q);
   lift(snapshot.qd, group.qd);
   lift(snapshot.qdd, group.qdd);

@@ -117,7 +117,6 @@ class StateDerivatives {
 
  private:
   Evaluator evaluator_;
-  std::vector<CurvePlace> curve_places_;  // of the state
   int parameters_;
   std::vector<Group> groups_;
   std::vector<double> jacobian_, f_, b_;

@@ -83,7 +83,8 @@ std::vector<EquilibriumGradient::Derivatives> EquilibriumGradient::by_constraint
     const Pair f = frames(block.body_i[at(e)], Plain::bodies == 2 ? block.body_j[at(e)] : -1, Plain::bodies);
     Along c{}, rows[Plain::rows];
     if constexpr (Plain::functions > 0) c = Along(DesignScalar(evaluator().element_value(entry.id).f));
-    element.phi(Arguments<Along>{f.i, f.j, c, f.ground}, rows);
+    const CurvePlace contact = evaluator().contact(entry.id);
+    element.phi(Arguments<Along>{f.i, f.j, c, f.ground, &contact}, rows);
     double scale = 1;
     if constexpr (HasSquaredValue<Plain>) scale = evaluator().element_jacobian(entry.id).scale;
     for (int r = 0; r < Plain::rows; ++r) {

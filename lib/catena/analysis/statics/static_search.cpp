@@ -36,7 +36,7 @@ void StaticSearch::leave(const Certificate& certificate, std::vector<double>& q,
     if (best.empty() || (restored && energy < lowest)) {
       best = trial;
       lowest = energy;
-      system_.evaluator().curve_places(places);
+      places = system_.evaluator().curve_places();
     }
   }
   q = best;

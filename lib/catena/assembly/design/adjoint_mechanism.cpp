@@ -121,7 +121,7 @@ void AdjointMechanism::add_constraints_by_q(const AdjointWeights& weights, std::
           by_qd[c] += sign * 2 * along * f.phi.d;
         }
       }
-    } else if constexpr (!is_custom<E> && !Joining<E>) {
+    } else if constexpr (detail::is_differentiated<E>) {
       constexpr int columns = 3 * E::bodies;
       using D = Dual<Series, columns>;
       for (int e = 0; e < block.size(); ++e) {
@@ -216,7 +216,7 @@ void AdjointMechanism::add_curvature(const AdjointWeights& weights, std::span<do
           by_q[c] += (b == 0 ? -1 : 1) * turning * weights.w[c];
         }
       }
-    } else if constexpr (!is_custom<E> && !Joining<E>) {
+    } else if constexpr (detail::is_differentiated<E>) {
       constexpr int columns = 3 * E::bodies;
       using Along = Dual<double, 1>;
       using D = Dual<Along, columns>;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "catena/assembly/curve_contacts.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
@@ -45,6 +46,8 @@ DesignMechanism::DesignMechanism(const Evaluator& evaluator, std::shared_ptr<con
   laws_ = compile_laws<DesignScalar>(*model_, evaluator.model().laws, *plan_);
   motion_.resize(at(plan_->bodies) + 1);
   place_immobile_bodies();
+  contacts_.resize(at(plan_->contacts));
+  take_given_contacts(*plan_, model_->constraints, contacts_);
 }
 
 // Breadth first from what is fixed, along the welds that were eliminated: as the plan has it.
@@ -126,6 +129,13 @@ void DesignMechanism::set_state(std::span<const DesignScalar> q, std::span<const
     m.c.dd -= f.s * qdd[c + 2];
     m.s.dd += f.c * qdd[c + 2];
   }
+  follow_contacts(
+      *plan_, model_->constraints, origin_,
+      [this](int body) {
+        const Frame<Taylor<DesignScalar>>& m = motion_[at(body)];
+        return Frame<double>{m.x.f.v, m.y.f.v, m.phi.f.v, m.c.f.v, m.s.f.v};
+      },
+      contacts_);
 }
 
 Frame<DesignScalar> DesignMechanism::ground_frame(int plan_body) const {

@@ -57,7 +57,9 @@ class DesignMechanism {
                  std::span<const DesignScalar> qdd = {});
 
   /// Searches for contacts on curves begin at these places: those of the state that is set next.
-  void go_to_curve_places(std::span<const CurvePlace> places) const;
+  void go_to_curve_places(std::span<const CurvePlace> places);
+  /// The contact of curves of a constraint at this state; no_contact where it does not search for one.
+  CurvePlace contact(int element) const;
 
   Frame<DesignScalar> ground_frame(int plan_body) const;
   const Frame<Taylor<DesignScalar>>& motion(int plan_body) const {
@@ -95,6 +97,7 @@ class DesignMechanism {
   std::vector<Taylor<DesignScalar>> function_;  // at the present time
   std::vector<CompiledLaw<DesignScalar>> laws_;
   std::vector<Frame<Taylor<DesignScalar>>> motion_;  // per plan body and the ground, relative to the origins
+  std::vector<CurvePlace> contacts_;                 // at this state, as Pose::contacts
 };
 
 }  // namespace catena

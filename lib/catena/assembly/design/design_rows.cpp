@@ -1,4 +1,5 @@
 // DesignMechanism: constraints, their loads and what they measure, with derivatives.
+#include "catena/assembly/curve_contacts.hpp"
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/base/at.hpp"
 
@@ -11,14 +12,14 @@ using detail::value_of_entry;
 /// Phi_q of an element with derivatives, as published, row-major with six columns.
 template <class E>
 void derive(const E& element, const detail::DesignFrames<DesignScalar>& f, const DesignScalar& c,
-            DesignScalar* entries) {
+            const CurvePlace& contact, DesignScalar* entries) {
   constexpr int columns = 3 * E::bodies;
   using D = Dual<DesignScalar, columns>;
   const Frame<D> i = seed<DesignScalar, columns>(f.i, 0);
   Frame<D> j;
   if constexpr (E::bodies == 2) j = seed<DesignScalar, columns>(f.j, 3);
   D rows[E::rows];
-  element.phi(Arguments<D>{i, j, D(c), f.ground}, rows);
+  element.phi(Arguments<D>{i, j, D(c), f.ground, &contact}, rows);
   for (int r = 0; r < E::rows; ++r) {
     for (int k = 0; k < columns; ++k) entries[6 * r + k] = rows[r].d[static_cast<std::size_t>(k)];
   }
@@ -26,13 +27,20 @@ void derive(const E& element, const detail::DesignFrames<DesignScalar>& f, const
 
 }  // namespace
 
-void DesignMechanism::go_to_curve_places(std::span<const CurvePlace> places) const {
-  for (const CurvePlace& place : places) {
-    const ElementRecord& record = model_->elements[at(place.element)];
-    with_list(model_->constraints, record.type, [&](const auto& list) {
-      if constexpr (SearchesCurve<ElementOf<decltype(list)>>) list[at(record.index)].element.go_to(place);
-    });
-  }
+void DesignMechanism::go_to_curve_places(std::span<const CurvePlace> places) {
+  for_each_contact(*plan_, model_->constraints, contacts_, [&](const auto& entry, CurvePlace& contact) {
+    for (const CurvePlace& place : places) {
+      if (place.element == entry.id) contact = place;
+    }
+  });
+}
+
+CurvePlace DesignMechanism::contact(int element) const {
+  CurvePlace contact;
+  const ElementRecord& record = model_->elements[at(element)];
+  with_list(plan_->blocks, record.type,
+            [&](const auto& block) { contact = contact_of(block, contacts_, record.index); });
+  return contact;
 }
 
 void DesignMechanism::rows(std::span<Taylor<DesignScalar>> out) const {
@@ -49,7 +57,8 @@ void DesignMechanism::rows(std::span<Taylor<DesignScalar>> out) const {
         *row += part;
         continue;
       }
-      entry.element.phi(Arguments<DesignSeries>{f.i, f.j, value_of_entry(entry, function_), f.ground}, row);
+      const CurvePlace& contact = contact_of(block, contacts_, block.entry[at(e)]);
+      entry.element.phi(Arguments<DesignSeries>{f.i, f.j, value_of_entry(entry, function_), f.ground, &contact}, row);
       if constexpr (HasSquaredValue<E>) row[0] *= DesignSeries(scale_[at(entry.id)]);
     }
   });
@@ -63,7 +72,8 @@ void DesignMechanism::add_constraint_loads(std::span<const DesignScalar> lambda,
       const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
                                                          [&](int body) { return detail::present(motion_[at(body)]); });
       DesignScalar entries[6 * E::rows];
-      derive(entry.element, f, value_of_entry(entry, function_).f, entries);
+      derive(entry.element, f, value_of_entry(entry, function_).f, contact_of(block, contacts_, block.entry[at(e)]),
+             entries);
       for (int r = 0; r < E::rows; ++r) {
         const DesignScalar weight = DesignScalar(scale_[at(entry.id)]) * lambda[at(block.row(e) + r)];
         for (int k = 0; k < 3 * E::bodies; ++k) {
@@ -86,7 +96,8 @@ DesignElementJacobian DesignMechanism::element_jacobian(int element) const {
     const auto& entry = list[at(record.index)];
     const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
                                                        [&](int body) { return detail::present(motion_[at(body)]); });
-    derive(entry.element, f, value_of_entry(entry, function_).f, result.entries);
+    derive(entry.element, f, value_of_entry(entry, function_).f, contact_of(block, contacts_, record.index),
+           result.entries);
     result.rows = E::rows;
     result.bodies = E::bodies;
     result.body_i = block.body_i[at(e)];
@@ -105,10 +116,8 @@ Taylor<DesignScalar> DesignMechanism::measure(int element) const {
   };
   with_list(model_->constraints, record.type, [&](const auto& list) {
     const auto& entry = list[at(record.index)];
-    if constexpr (requires { entry.element.measure(frame(entry.i), frame(entry.j)); }) {
-      measured = entry.element.measure(frame(entry.i), frame(entry.j));
-    }
     using E = ElementOf<decltype(list)>;
+    if constexpr (Measuring<E>) measured = measure_of(entry.element, frame(entry.i), frame(entry.j), contact(element));
     if constexpr (HasParts<E>) {
       const auto& parts = std::get<std::vector<ElementEntry<typename E::Part, DesignScalar>>>(model_->constraints);
       for (int k = 0; k < entry.element.parts; ++k) {

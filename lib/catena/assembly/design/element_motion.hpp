@@ -13,10 +13,12 @@ namespace catena::detail {
 
 using DesignSeries = Taylor<DesignScalar>;
 
-/// Elements that are differentiated by design parameters: not those that only C++ can make, nor ropes.
+/// Elements that AdjointMechanism and MechanismTangents differentiate: not those that AdjointMechanism::why_not()
+/// refuses.
 template <class E>
-constexpr bool is_differentiated = !std::is_same_v<E, CustomConstraint<double>> &&
-                                   !std::is_same_v<E, CustomForce<double>> && !Joining<E> && !Sharing<E>;
+constexpr bool is_differentiated =
+    !std::is_same_v<E, CustomConstraint<double>> && !std::is_same_v<E, CustomForce<double>> && !Joining<E> &&
+    !Sharing<E> && !SearchesCurve<E>;
 
 /// Equations that show a few scalars alone: slides of contacts, and what only C++ can make.
 template <class E>

@@ -4,8 +4,8 @@
 //   Phi = n^T (p_j - p_i), n = R p_i' / |p_i'|        N = A_i n, r_C the contact
 //   Phi_qi = [-N^T, -((r_C - r_i) x N)]      Phi_qj = [N^T, (r_C - r_j) x N]      nu = 0
 //
-// Phi is the gap along the common normal, m, positive to the left of curve i. Both parameters are internal to the
-// element: Newton's method from the common normal found last; one more step in the scalar of the derivatives carries
+// Phi is the gap along the common normal, m, positive to the left of curve i. Both parameters are values of the
+// state: Newton's method from the common normal found last; one more step in the scalar of the derivatives carries
 // their derivatives exactly, and as Phi is stationary in both this makes gamma and the second derivatives exact. Of
 // several common normals the shortest in the given configuration is followed; see common_normal.hpp for what kinds
 // there are. Open curves go on as straight lines; curve_use() reports a place beyond an end. Singular where the
@@ -32,9 +32,7 @@ struct CamCam {
 
   Vec2<S> s_i{}, s_j{};  // where torques are reported
   BodyCurve<S> curve_i{}, curve_j{};
-  mutable CommonNormal contact{};                            // found last
-  mutable Frame<double> found_for{contact.s_i, 0, 0, 1, 0};  // j seen from i then, and whether it was found
-  mutable bool found = false;
+  CommonNormal given_normal{};
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &CamCam::s_i, 0, "the body with the first cam"},
@@ -50,45 +48,44 @@ struct CamCam {
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (curve_i && curve_j && !(curve_i.is_line() && curve_j.is_line()))
-      contact = search_normal(curve_i, curve_j, plain(seen_from(i, j)));
-    found_for.x = std::numeric_limits<double>::quiet_NaN();
+      given_normal = search_normal(curve_i, curve_j, plain(seen_from(i, j)));
   }
   const char* check() const {
     if (!curve_i || !curve_j) return "lacks a curve";
     if (curve_i.is_line() && curve_j.is_line()) return "two straight lines have no point of contact";
     if (curve_i.holds() || curve_j.holds()) return "a cam cannot have \"beyond\": \"hold\"; use \"error\" or \"line\"";
-    return contact.kind < 0 ? "the cams have no common normal in the given configuration" : nullptr;
+    return given_normal.kind < 0 ? "the cams have no common normal in the given configuration" : nullptr;
   }
   const char* trouble(const Arguments<double>& a) const {
-    return follow_contact(seen_from(a.i, a.j)) ? nullptr
-                                               : "the cams have no single point of contact: their curvatures are equal";
+    return a.contact->is_regular ? nullptr : "the cams have no single point of contact: their curvatures are equal";
   }
 
-  CurvePlace place() const { return {.s_i = contact.s_i, .s_j = contact.s_j}; }
-  void go_to(const CurvePlace& place) const {
-    contact.s_i = place.s_i;
-    contact.s_j = place.s_j;
-    found_for.x = std::numeric_limits<double>::quiet_NaN();
+  CurvePlace place() const { return {.s_i = given_normal.s_i, .s_j = given_normal.s_j}; }
+  /// Not regular, and the place as it was, where no common normal of the given one's kind is found.
+  void follow_contact(const Frame<double>& i, const Frame<double>& j, CurvePlace& place) const {
+    const Frame<double> relative = seen_from(i, j);
+    CommonNormal normal = follow_normal(curve_i, curve_j, relative, place.s_i, place.s_j);
+    if (normal.kind != given_normal.kind) normal = search_normal(curve_i, curve_j, relative, given_normal.kind);
+    place.is_regular = normal.kind >= 0;
+    if (place.is_regular) place.s_i = normal.s_i, place.s_j = normal.s_j;
   }
   bool can_leave_curve() const { return curve_i.ends() || curve_j.ends(); }
   /// Of the two curves the one that is further beyond its end.
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
-    follow_contact(seen_from(a.i, a.j));
-    if (!curve_j.ends()) return curve_i.use_at(contact.s_i);
-    CurveUse j = curve_j.use_at(contact.s_j);
+    if (!curve_j.ends()) return curve_i.use_at(a.contact->s_i);
+    CurveUse j = curve_j.use_at(a.contact->s_j);
     j.body = 1;
     if (!curve_i.ends()) return j;
-    const CurveUse i = curve_i.use_at(contact.s_i);
+    const CurveUse i = curve_i.use_at(a.contact->s_i);
     return i.excess() > j.excess() ? i : j;
   }
 
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {
     const Frame<T> relative = seen_from(a.i, a.j);
-    const bool regular = follow_contact(plain(relative));
-    T s(contact.s_i), t(contact.s_j);
+    T s(a.contact->s_i), t(a.contact->s_j);
     // The value itself is stationary in s and t.
-    if (regular && !std::is_same_v<T, double>) {
+    if (a.contact->is_regular && !std::is_same_v<T, double>) {
       const CurvePoint<T> i = curve_i.evaluate(s), j = seen_from(curve_j.evaluate(t), relative);
       const TangencyMatrix m(plain(i), plain(j));
       const T f = cross(i.d1, j.d1), g = dot(i.d1, j.p - i.p);
@@ -99,29 +96,8 @@ struct CamCam {
     out[0] = cross(i.d1, j.p - i.p) / norm(i.d1);
   }
   void jacobian(const Arguments<double>& a, double* entries) const {
-    follow_contact(seen_from(a.i, a.j));
-    const CurvePoint<double> c = curve_i.plain(contact.s_i);
+    const CurvePoint<double> c = curve_i.plain(a.contact->s_i);
     contact_jacobian(a.i, a.j, a.i.point(c.p), a.i.axis(c.normal()), entries);
-  }
-
- private:
-  /// find_contact(), repeated only for a new place of the bodies: equations and their derivatives are evaluated in
-  /// turns.
-  bool follow_contact(const Frame<double>& relative) const {
-    if (relative.x != found_for.x || relative.y != found_for.y || relative.c != found_for.c ||
-        relative.s != found_for.s) {
-      found = find_contact(relative);
-      found_for = relative;
-    }
-    return found;
-  }
-  /// Sets `contact`; false, leaving it as it was, where no common normal of its kind is found.
-  bool find_contact(const Frame<double>& relative) const {
-    CommonNormal normal = follow_normal(curve_i, curve_j, relative, contact.s_i, contact.s_j);
-    if (normal.kind != contact.kind) normal = search_normal(curve_i, curve_j, relative, contact.kind);
-    if (normal.kind < 0) return false;
-    contact = normal;
-    return true;
   }
 };
 

@@ -85,9 +85,9 @@ struct Contact : PointOnCurve<S> {
     out[0] = T(free_side()) * out[0] - T(radius);
   }
   template <class T>
-  T measure(const Frame<T>& i, const Frame<T>& j) const {
+  T measure(const Frame<T>& i, const Frame<T>& j, const CurvePlace& contact) const {
     T gap;
-    phi(Arguments<T>{i, j, T(0.0), {}}, &gap);
+    phi(Arguments<T>{i, j, T(0.0), {}, &contact}, &gap);
     return gap;
   }
   void jacobian(const Arguments<double>& a, double* entries) const {

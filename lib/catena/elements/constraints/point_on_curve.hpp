@@ -3,7 +3,7 @@
 //   x = A_i^T (r_Pj - r_i)        foot: (p(s) - x)^T p'(s) = 0        Phi = n(s)^T (x - p(s)), n = R p' / |p'|
 //   Phi_qi = [-N^T, -((r_Pj - r_i) x N)]      Phi_qj = [N^T, A_j s'Pj x N]      N = A_i n        nu = 0
 //
-// Phi is the distance to the left of the curve, m. The parameter s is internal to the element: Newton's method from the
+// Phi is the distance to the left of the curve, m. The parameter s is a value of the state: Newton's method from the
 // foot found last (the nearest point at first) keeps the branch where a curve crosses itself; one more step in the
 // scalar of the derivatives carries ds/dq exactly, and as Phi is stationary in s this makes gamma and the second
 // derivatives exact. Beyond the ends of an open curve the equation is that of the straight line along the tangent at
@@ -30,9 +30,7 @@ struct PointOnCurve {
 
   Vec2<S> s_i{}, s_j{};  // s_i: where torques on i are reported
   BodyCurve<S> curve{};
-  mutable double parameter = std::numeric_limits<double>::quiet_NaN();  // of the foot found last
-  mutable Vec2<double> found_for{parameter, 0};  // the point at the last search, and whether it found
-  mutable bool found = false;
+  double given_foot = std::numeric_limits<double>::quiet_NaN();
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &PointOnCurve::s_i, 0, "the body with the curve"},
@@ -46,32 +44,31 @@ struct PointOnCurve {
   }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
-    if (curve) parameter = curve.nearest(plain(local(i, j)));
-    found_for = {std::numeric_limits<double>::quiet_NaN(), 0};
+    if (curve) given_foot = curve.nearest(plain(local(i, j, s_j)));
   }
   const char* check() const { return curve ? nullptr : "has no curve"; }
   const char* trouble(const Arguments<double>& a) const {
-    return follow_foot(local(a.i, a.j)) ? nullptr : "the point is at a centre of curvature of the curve";
+    return a.contact->is_regular ? nullptr : "the point is at a centre of curvature of the curve";
   }
 
-  CurvePlace place() const { return {.s_i = parameter}; }
-  void go_to(const CurvePlace& place) const {
-    parameter = place.s_i;
-    found_for.x = std::numeric_limits<double>::quiet_NaN();
+  CurvePlace place() const { return {.s_i = given_foot}; }
+  /// Not regular where the distance has no proper minimum.
+  void follow_contact(const Frame<double>& i, const Frame<double>& j, CurvePlace& place) const {
+    const Vec2<double> x = local(i, j, plain(s_j));
+    const auto towards = [&](const CurvePoint<double>& c) { return descent(c, x); };
+    double s = place.s_i;
+    place.is_regular = follow_minimum(curve, towards, s) || follow_minimum(curve, towards, s = curve.nearest(x));
+    place.s_i = place.is_regular ? s : curve.nearest(x);
   }
   bool can_leave_curve() const { return curve.ends(); }
-  std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
-    follow_foot(local(a.i, a.j));
-    return curve.use_at(parameter);
-  }
+  std::optional<CurveUse> curve_use(const Arguments<double>& a) const { return curve.use_at(a.contact->s_i); }
 
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {
-    const Vec2<T> x = local(a.i, a.j);
-    const bool regular = follow_foot(plain(x));
-    T s(parameter);
+    const Vec2<T> x = local(a.i, a.j, s_j);
+    T s(a.contact->s_i);
     // The value itself is stationary in s.
-    if (regular && !std::is_same_v<T, double>) {
+    if (a.contact->is_regular && !std::is_same_v<T, double>) {
       const CurvePoint<T> c = curve.evaluate(s);
       s = s - dot(c.p - x, c.d1) / T(descent(plain(c), plain(x)).bend);
     }
@@ -79,37 +76,19 @@ struct PointOnCurve {
     out[0] = cross(c.d1, x - c.p) / norm(c.d1);
   }
   void jacobian(const Arguments<double>& a, double* entries) const {
-    follow_foot(local(a.i, a.j));
-    contact_jacobian(a.i, a.j, a.j.point(s_j), a.i.axis(curve.plain(parameter).normal()), entries);
+    contact_jacobian(a.i, a.j, a.j.point(s_j), a.i.axis(curve.plain(a.contact->s_i).normal()), entries);
   }
 
  private:
   /// The point in the frame of the curve.
-  template <class T>
-  Vec2<T> local(const Frame<T>& i, const Frame<T>& j) const {
-    return i.to_local(j.point(s_j) - i.origin());
+  template <class T, class U>
+  static Vec2<T> local(const Frame<T>& i, const Frame<T>& j, const Vec2<U>& point) {
+    return i.to_local(j.point(point) - i.origin());
   }
   /// Of half the squared distance.
   static Descent descent(const CurvePoint<double>& c, const Vec2<double>& x) {
     const double size = squared_norm(c.d1);
     return {dot(c.p - x, c.d1), size + dot(c.p - x, c.d2), size};
-  }
-  /// find_foot(), repeated only for a new place: equations and their derivatives are evaluated in turns.
-  bool follow_foot(const Vec2<double>& x) const {
-    if (x.x != found_for.x || x.y != found_for.y) {
-      found = find_foot(x);
-      found_for = x;
-    }
-    return found;
-  }
-  /// Sets `parameter`; false where the distance has no proper minimum.
-  bool find_foot(const Vec2<double>& x) const {
-    const auto towards = [&](const CurvePoint<double>& c) { return descent(c, x); };
-    double s = parameter;
-    bool minimum = follow_minimum(curve, towards, s);
-    if (!minimum) minimum = follow_minimum(curve, towards, s = curve.nearest(x));
-    parameter = minimum ? s : curve.nearest(x);
-    return minimum;
   }
 };
 

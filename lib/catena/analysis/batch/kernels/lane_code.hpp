@@ -180,7 +180,7 @@ struct LaneJob {
   double *tail, *exchange;
   /// Evaluates searched rows into `right`, and their entries into `matrix`, in so many lanes from the first on.
   void (*search)(const LaneJob& job, LaneSearch what, int first, int count);
-  const LaneSearches* searches;
+  LaneSearches* searches;
   int lanes;  ///< in use; packs beyond them are left out
   bool velocity, acceleration;
   double tolerance;  ///< of residuals, relative to the length scale

@@ -39,7 +39,7 @@ bool Adams::start(double t, std::span<const double> y) {
   t_ = t_before_ = t;
   std::copy(y.begin(), y.end(), y_.begin());
   if (!motion_.derivative(t_, Side::after, y_, slope_)) return false;
-  motion_.equations().evaluator().curve_places(curve_places_);
+  curve_places_ = motion_.equations().evaluator().curve_places();
   const std::span<const double> state(y_), k(slope_);
   scale_.observe(t_, 0, motion_.qd(state).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
                  motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());

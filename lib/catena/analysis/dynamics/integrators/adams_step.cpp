@@ -77,7 +77,7 @@ bool Adams::try_step(double h) {
   t_before_ = t_;
   t_ = t_new_;
   y_.swap(y_new_);
-  motion_.equations().evaluator().curve_places(curve_places_);
+  curve_places_ = motion_.equations().evaluator().curve_places();
   stepped_by_runge_kutta_ = false;
   ++motion_.equations().evaluator().counters.steps;
   observe_ratio();
@@ -156,7 +156,7 @@ bool Adams::advance_by_runge_kutta(double limit) {
   std::copy(runge_kutta_.state().begin(), runge_kutta_.state().end(), y_.begin());
   std::copy(runge_kutta_.slope().begin(), runge_kutta_.slope().end(), slope_.begin());
   scale_ = runge_kutta_.scale();
-  motion_.equations().evaluator().curve_places(curve_places_);
+  curve_places_ = motion_.equations().evaluator().curve_places();
   stepped_by_runge_kutta_ = true;
   observe_ratio();
   if (!crossing_) {

@@ -40,7 +40,7 @@ bool RungeKutta::start(double t, std::span<const double> y) {
   t_ = t_before_ = t;
   std::copy(y.begin(), y.end(), y_.begin());
   if (!derivative(t_, Side::after, y_, slope_)) return false;
-  motion_.equations().evaluator().curve_places(curve_places_);
+  curve_places_ = motion_.equations().evaluator().curve_places();
   observe_ratio();
   observe_rates();
   if (h_ == 0) {
@@ -100,7 +100,7 @@ bool RungeKutta::take_over(double t, std::span<const double> y, double h, const 
   h_ = h;
   ratios_.set_usual(usual_ratio);
   if (!derivative(t_, Side::after, y_, slope_)) return false;
-  motion_.equations().evaluator().curve_places(curve_places_);
+  curve_places_ = motion_.equations().evaluator().curve_places();
   observe_ratio();
   return true;
 }

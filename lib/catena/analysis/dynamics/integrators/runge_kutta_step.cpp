@@ -195,7 +195,7 @@ void RungeKutta::accept(double growth, double proposed) {
   y_before_.swap(y_);
   y_.swap(y_new_);
   slope_.swap(slope_new_);
-  motion_.equations().evaluator().curve_places(curve_places_);
+  curve_places_ = motion_.equations().evaluator().curve_places();
   observe_ratio();
   observe_rates();
   if (ratios_.at_start() > dependence::clear_of_passage) turn_.end();

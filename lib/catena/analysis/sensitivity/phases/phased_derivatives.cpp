@@ -85,14 +85,13 @@ bool PhasedDerivatives::start(double t, std::span<const double> q_values, std::s
     if (!jump.places.empty()) return fail("the motion begins with an impact: earlier or later are different motions");
   }
   Evaluator open(open_plan_, *contacts_.model);
-  std::vector<CurvePlace> places;
-  evaluator().curve_places(places);
-  open.go_to_curve_places(places);
+  open.go_to_curve_places(evaluator().curve_places());
   open.set_time(t);
   open.set_configuration(q_values);
   StartDerivatives start(open, given_start_);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     DesignMechanism mechanism(open, models_[k]);
+    mechanism.go_to_curve_places(open.curve_places());
     mechanism.lift_configuration(q_values, q(tracks_[k].end));
     for (std::size_t c = 0; c < n_; ++c) tracks_[k].end[n_ + c] = qd_values[c];
     if (!start.find(mechanism, groups()[k].count, q(tracks_[k].end), qd(tracks_[k].end)))
@@ -177,8 +176,7 @@ bool PhasedDerivatives::make_step(double h) {
 bool PhasedDerivatives::take_values(const MotionStretch& stretch, double t, DesignVector Track::*y) {
   const std::optional<Snapshot> state = stretch.at(t);
   if (!state) return not_shown(t);
-  std::vector<CurvePlace> places;
-  state->evaluator.curve_places(places);
+  const std::vector<CurvePlace>& places = state->evaluator.curve_places();
   evaluator().go_to_curve_places(places);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     groups()[k].mechanism.go_to_curve_places(places);
@@ -263,8 +261,7 @@ bool PhasedDerivatives::find(const Snapshot& snapshot) {
   }
   // At a jump of functions the motion may show velocities of either side: its own are those after it.
   const bool jumps = crossed_ == snapshot.t;
-  std::vector<CurvePlace> places;
-  snapshot.evaluator.curve_places(places);
+  const std::vector<CurvePlace>& places = snapshot.evaluator.curve_places();
   evaluator().go_to_curve_places(places);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     Group& group = groups()[k];

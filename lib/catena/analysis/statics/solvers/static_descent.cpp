@@ -239,7 +239,7 @@ bool Descent::search_along(double shift, double slope) {
   double factor = std::min({1.0, reach_ * descent::largest_turn / travel.turn, reach_ * extent_ / travel.length});
   const bool clipped = factor < 1;
   const double noise = descent::noise_part * (energy_size_ + system_.force_size() * extent_);
-  system_.evaluator().curve_places(curve_places_);
+  curve_places_ = system_.evaluator().curve_places();
   for (; factor > thresholds::smallest_factor; factor /= 2) {
     std::copy(q_.begin(), q_.end(), trial_.begin());
     system_.advance(trial_, change_, factor, std::numeric_limits<double>::infinity());

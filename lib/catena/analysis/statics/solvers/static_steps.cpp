@@ -11,7 +11,7 @@ namespace catena {
 void KeptPlace::keep(StaticSystem& system, std::span<const double> q_now, std::span<const double> lambda_now) {
   q.assign(q_now.begin(), q_now.end());
   lambda.assign(lambda_now.begin(), lambda_now.end());
-  system.evaluator().curve_places(curves);
+  curves = system.evaluator().curve_places();
 }
 
 void KeptPlace::take_back(StaticSystem& system, std::span<double> q_now, std::span<double> lambda_now) const {
