@@ -48,7 +48,8 @@ class ClaimedDigits {
       // A column that claims no digit may be off by more than it is large.
       return std::max(result.digits[k] == 0 ? std::min(part, 1.0) : part, least_error);
     };
-    samples_.push_back({claimed, part_of(std::max(0.0L, error - noise)), part_of(error), what + " " + column});
+    const double certain = part_of(std::max(0.0L, error - noise));
+    samples_.push_back({claimed, certain, size > 0 ? part_of(error) : certain, what + " " + column});
   }
 
   std::size_t size() const { return samples_.size(); }
