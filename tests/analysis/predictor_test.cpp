@@ -55,6 +55,47 @@ TEST(Predictor, OfTwoInstantsCloseTogetherTakesOne) {
   }
 }
 
+// Six instants without rates: of a motion that is smooth for the steps the error is that of order six, of one that is
+// not that of order four, which is the smaller one then.
+TEST(Predictor, TakesSixInstantsWhereThatIsBetter) {
+  for (const double step : {0.1, 0.3, 1.3, 1.6}) {
+    SCOPED_TRACE(step);
+    Predictor predictor(3);
+    std::array<double, 7> q{};
+    for (std::size_t k = 0; k < q.size(); ++k) q[k] = std::sin(step * static_cast<double>(k) + 0.4);
+    for (std::size_t k = 0; k + 1 < q.size(); ++k) {
+      const std::array<double, 3> place{q[k], -q[k], 2 * q[k]};
+      predictor.push(step * static_cast<double>(k), place, {}, {});
+    }
+    const double four = 4 * q[5] - 6 * q[4] + 4 * q[3] - q[2];
+    const double six = 6 * q[5] - 15 * q[4] + 20 * q[3] - 15 * q[2] + 6 * q[1] - q[0];
+    std::array<double, 3> found{};
+    ASSERT_TRUE(predictor.predict(step * 6, found, {}, {}));
+    const double expected = step < 1 ? six : four;
+    EXPECT_NEAR(found[0], expected, 1e-12);
+    EXPECT_NEAR(found[1], -expected, 1e-12);
+    EXPECT_NEAR(found[2], 2 * expected, 1e-12);
+    if (step < 1) {
+      EXPECT_LT(std::abs(six - q[6]), 0.2 * std::abs(four - q[6]));
+    } else {
+      EXPECT_LT(std::abs(four - q[6]), std::abs(six - q[6]));
+    }
+  }
+}
+
+// Exact for polynomials of the fifth degree, at instants that are not equally far apart as well.
+TEST(Predictor, OfSixInstantsIsExactForQuintics) {
+  const auto quintic = [](double t) { return 0.2 + t * (1.1 + t * (-0.4 + t * (0.3 + t * (0.02 - t * 0.01)))); };
+  Predictor predictor(1);
+  for (const double t : {0.0, 0.13, 0.2, 0.31, 0.4, 0.55}) {
+    const double q = quintic(t);
+    predictor.push(t, {&q, 1}, {}, {});
+  }
+  double q = 0;
+  ASSERT_TRUE(predictor.predict(0.7, {&q, 1}, {}, {}));
+  EXPECT_NEAR(q, quintic(0.7), 1e-13);
+}
+
 TEST(Predictor, KnowsNothingAtFirst) {
   Predictor predictor(1);
   double q = 7;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -71,6 +72,37 @@ TEST(EliminationList, SolvesRandomBlocksAsDenseAlgebraDoes) {
       const Eigen::VectorXd ax = a.partialPivLu().solve(b), az = a.transpose().partialPivLu().solve(b);
       EXPECT_LT((x - ax).lpNorm<Eigen::Infinity>(), 10 * growth * (1 + ax.lpNorm<Eigen::Infinity>()));
       EXPECT_LT((z - az).lpNorm<Eigen::Infinity>(), 10 * growth * n * (1 + az.lpNorm<Eigen::Infinity>()));
+    }
+  }
+}
+
+// Four right-hand sides side by side are rounded as each by itself.
+TEST(EliminationList, SolvesInLanesWhatItSolvesOneByOne) {
+  Random random(43);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Blocks blocks(1 + random.below(4), 1 + random.below(9), random);
+    const auto n = at(blocks.matrix.pattern.columns);
+    std::vector<double> rows(n), columns(n);
+    for (std::size_t k = 0; k < n; ++k) rows[k] = random.uniform(0.5, 2);
+    for (std::size_t k = 0; k < n; ++k) columns[k] = random.uniform(0.5, 2);
+    EliminationList list(blocks.matrix.pattern, {blocks.row, blocks.column, blocks.start},
+                         std::vector<double>(blocks.matrix.values.size(), 1.0));
+    list.factor(blocks.matrix.values);
+    std::vector<Lanes> together(n);
+    std::array<std::vector<double>, Lanes::count> alone;
+    for (int lane = 0; lane < Lanes::count; ++lane) {
+      for (std::size_t k = 0; k < n; ++k) {
+        alone[at(lane)].push_back(random.uniform(-1, 1));
+        together[k].set(lane, alone[at(lane)][k]);
+      }
+    }
+    for (const bool scaled : {false, true}) {
+      const std::span<const double> factor = scaled ? std::span<const double>(columns) : std::span<const double>();
+      list.solve(std::span<Lanes>(together), rows, factor);
+      for (int lane = 0; lane < Lanes::count; ++lane) {
+        list.solve(std::span<double>(alone[at(lane)]), rows, factor);
+        for (std::size_t k = 0; k < n; ++k) EXPECT_EQ(together[k][lane], alone[at(lane)][k]);
+      }
     }
   }
 }

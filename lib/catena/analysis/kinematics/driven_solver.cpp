@@ -26,6 +26,26 @@ constexpr double keep_distance = 1e-4;
 constexpr double keep_rate = 1e-2;
 // A ratio of successive corrections above this asks for new factors.
 constexpr double poor_contraction = 0.1;
+// Of fewer columns, eight bodies, the sizes of vectors are found body by body: Scaling's lanes are for more.
+constexpr std::size_t few_columns = 24;
+
+/// The largest shift and turn of some bodies; not a number where an entry is not finite.
+class BodyMotion {
+ public:
+  void add(double x, double y, double phi) {
+    const double dx = std::abs(x), dy = std::abs(y), turn = std::abs(phi), shift = dx > dy ? dx : dy;
+    shift_ = shift > shift_ ? shift : shift_;
+    turn_ = turn > turn_ ? turn : turn_;
+    sum_ += dx + dy + turn;
+  }
+  Scaling::Size size(double length) const {
+    const double shift = shift_ / length, nothing = sum_ - sum_;  // not a number, or zero
+    return {(shift > turn_ ? shift : turn_) + nothing, turn_ + nothing};
+  }
+
+ private:
+  double shift_ = 0, turn_ = 0, sum_ = 0;
+};
 
 }  // namespace
 
@@ -136,7 +156,17 @@ void DrivenSolver::evaluate_at(std::span<const double> q) {
     extent_ = sizes[0].all;
     factored_.gap = sizes[1].all;
   };
-  if (plan_.contiguous) {
+  if (plan_.contiguous && q_.size() < few_columns) {
+    BodyMotion place, gap;
+    for (std::size_t c = 0; c < q_.size(); c += 3) {
+      const double *there = q.data() + c, *from = factored_.q.data() + c;
+      place.add(there[0], there[1], there[2]);
+      gap.add(there[0] - from[0], there[1] - from[1], there[2] - from[2]);
+    }
+    std::copy_n(q.begin(), q_.size(), q_.begin());
+    extent_ = place.size(evaluator_.length_scale()).all;
+    factored_.gap = gap.size(evaluator_.length_scale()).all;
+  } else if (plan_.contiguous) {
     keep([](std::size_t c) { return c; });
   } else {
     keep([&](std::size_t c) { return at(plan_.coordinate[c]); });
@@ -217,6 +247,14 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
 
 // q -= step_, measured on the way.
 Scaling::Size DrivenSolver::subtract_step(std::span<double> q) {
+  if (step_.size() < few_columns) {
+    BodyMotion motion;
+    for (std::size_t c = 0; c < step_.size(); c += 3) {
+      motion.add(step_[c], step_[c + 1], step_[c + 2]);
+      for (std::size_t k = c; k < c + 3; ++k) q[k] -= step_[k];
+    }
+    return motion.size(evaluator_.length_scale());
+  }
   return scaling_.scan_columns<1>(step_.size(), [&](std::size_t c) {
     q[c] -= step_[c];
     return std::array{step_[c]};

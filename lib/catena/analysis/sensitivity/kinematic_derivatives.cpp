@@ -48,11 +48,14 @@ bool KinematicDerivatives::find_by_tangents(const Snapshot& snapshot, Side side)
   const bool velocity = !snapshot.qd.empty(), acceleration = velocity && !snapshot.qdd.empty();
   const bool reacts = acceleration && !snapshot.lambda.empty();
   tangents_->set_motion(evaluator(), snapshot.qd, snapshot.qdd, side);
-  for (auto* rows : {&phi_, &rates_, &bends_, &loads_}) std::fill(rows->begin(), rows->end(), 0.0);
-  TangentSums own{.phi = phi_};
-  if (velocity) own.rates = rates_;
-  if (acceleration) own.bends = bends_;
-  if (reacts) own.loads = loads_;
+  const auto cleared = [](std::vector<double>& rows, bool wanted) {
+    if (wanted) std::fill(rows.begin(), rows.end(), 0.0);
+    return wanted ? std::span<double>(rows) : std::span<double>();
+  };
+  const TangentSums own{.loads = cleared(loads_, reacts),
+                        .phi = cleared(phi_, true),
+                        .rates = cleared(rates_, velocity),
+                        .bends = cleared(bends_, acceleration)};
   for (std::size_t g = 0; g < groups().size(); ++g) {
     tangents_->add_parameters(groups()[g].mechanism, reached_[g], snapshot.lambda, snapshot.qdd, g * parameters_at_once,
                               width_, own);
@@ -72,12 +75,13 @@ bool KinematicDerivatives::find_by_tangents(const Snapshot& snapshot, Side side)
   for (std::size_t g = 0, first = 0; g < groups().size(); ++g, first += parameters_at_once) {
     Group& group = groups()[g];
     for (const int coordinate : plan().coordinate) {
-      const std::size_t c = at(coordinate), row = c * width_ + first;
-      for (std::size_t p = 0; p < at(group.count); ++p) {
-        group.q[c].d[p] = q_[row + p];
-        if (velocity) group.qd[c].d[p] = qd_[row + p];
-        if (acceleration) group.qdd[c].d[p] = qdd_[row + p];
-      }
+      const std::size_t c = at(coordinate);
+      const auto take = [&](const std::vector<double>& rows, DesignScalar& x) {
+        std::copy_n(rows.data() + c * width_ + first, parameters_at_once, x.d.data());
+      };
+      take(q_, group.q[c]);
+      if (velocity) take(qd_, group.qd[c]);
+      if (acceleration) take(qdd_, group.qdd[c]);
     }
     for (std::size_t p = 0; reacts && p < at(group.count); ++p) {
       std::fill(b.begin(), b.end(), 0.0);

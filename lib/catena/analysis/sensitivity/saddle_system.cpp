@@ -18,6 +18,10 @@ constexpr double regular = 1e-15;
 // Up to so many unknowns a matrix that is stored in full costs less than the sparse one of twice as many rows and its
 // checks: at 9, five times less; elimination grows with the third power.
 constexpr int most_dense = 24;
+// At 9 unknowns a list of the entries costs a quarter of that. Its pivots are those of an earlier matrix: with all of
+// them above this part of the largest, of a matrix whose rows and columns are scaled, no multiplier is much above a
+// hundred, and solutions are as good to 2e-14 x condition; else the matrix is stored in full and pivots are chosen.
+constexpr double well_pivoted = 1e-2;
 // Of the terms of a row: solutions are good to rounding x condition, and what a parameter asks of one row alone is of
 // the size of its terms.
 constexpr double contradicting = 1e-6;
@@ -65,14 +69,17 @@ void SaddleSystem::choose_rows(std::span<const double> jacobian) {
 
 bool SaddleSystem::make_pattern() {
   const int columns = plan_->columns, size = columns + static_cast<int>(rows_.size());
-  dense_ = block_ == SaddleBlock::none && 2 * columns == size && columns > 0 && columns <= most_dense;
+  alone_is_solved_ = block_ == SaddleBlock::none && 2 * columns == size && columns > 0 && columns <= most_dense;
   place_of_row_.assign(at(plan_->rows), -1);
   for (std::size_t k = 0; k < rows_.size(); ++k) place_of_row_[at(rows_[k])] = static_cast<int>(k);
-  if (!dense_) tangent_.arrange(rows_);
+  if (!alone_is_solved_) tangent_.arrange(rows_);
   find_dependent_entries();
   solution_.resize(at(size));
-  if (!dense_) return factorization_.analyze(tangent_.pattern(), Kernel::automatic, counters_).ok();
+  if (!alone_is_solved_) return factorization_.analyze(tangent_.pattern(), Kernel::automatic, counters_).ok();
   find_dense_slots();
+  const bool all_rows = plan_->rows == columns;
+  alone_.listed = all_rows && factorization_.analyze(plan_->jacobian, Kernel::automatic, counters_).ok();
+  alone_.has_units = false;
   return true;
 }
 
@@ -93,16 +100,16 @@ void SaddleSystem::find_dependent_entries() {
 // Places of the entries of Phi_q where it is stored in full, row after row.
 void SaddleSystem::find_dense_slots() {
   const int columns = plan_->columns;
-  full_.slot.assign(at(plan_->jacobian.entries()), -1);
+  alone_.slot.assign(at(plan_->jacobian.entries()), -1);
   for (int c = 0; c < columns; ++c) {
     for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
       const int row = place_of_row_[at(plan_->jacobian.row_index[at(k)])];
-      if (row >= 0) full_.slot[at(k)] = row * columns + c;
+      if (row >= 0) alone_.slot[at(k)] = row * columns + c;
     }
   }
-  full_.solution.resize(at(2 * columns));
-  full_.side.resize(at(columns));
-  full_.places.resize(at(columns));
+  alone_.solution.resize(at(2 * columns));
+  alone_.side.resize(at(columns));
+  alone_.places.resize(at(columns));
 }
 
 bool SaddleSystem::begin(std::span<const double> jacobian) {
@@ -112,11 +119,8 @@ bool SaddleSystem::begin(std::span<const double> jacobian) {
     analyzed_ = true;
   }
   for (DependentEntry& entry : dependent_entries_) entry.value = jacobian[at(entry.entry)];
-  if (dense_) {
-    const std::span<double> entries = full_.factors.begin(plan_->columns);
-    for (std::size_t k = 0; k < full_.slot.size(); ++k) {
-      if (full_.slot[k] >= 0) entries[at(full_.slot[k])] = jacobian[k];
-    }
+  if (alone_is_solved_) {
+    values_.assign(jacobian.begin(), jacobian.begin() + plan_->jacobian.entries());
     return true;
   }
   tangent_.begin(jacobian);
@@ -129,26 +133,64 @@ void SaddleSystem::add_diagonal(int coordinate, double value) {
 }
 
 bool SaddleSystem::factorize() {
-  if (dense_) {
-    ++counters_.factorizations;
-    return full_.factors.factorize() && full_.factors.rcond() > regular;
-  }
+  if (alone_is_solved_) return factorize_alone();
   return factorization_.factorize(tangent_.values(), counters_).ok() && factorization_.rcond() > regular;
 }
 
+// Columns are scaled by their largest entries at the first matrix: pivots must not depend on the unit of length.
+bool SaddleSystem::factorize_alone() {
+  if (alone_.listed && !alone_.has_units) {
+    std::vector<double> units(at(plan_->columns), 0.0);
+    for (std::size_t c = 0; c < units.size(); ++c) {
+      for (int k = plan_->jacobian.column_start[c]; k < plan_->jacobian.column_start[c + 1]; ++k)
+        units[c] = std::max(units[c], std::abs(values_[at(k)]));
+      units[c] = std::isnormal(units[c]) ? 1 / units[c] : 1;
+    }
+    factorization_.set_column_units(units);
+    alone_.has_units = true;
+  }
+  alone_.in_list = alone_.listed && factorization_.factorize(values_, counters_).ok() &&
+                   factorization_.rcond() > well_pivoted && factorization_.solves_in_lanes();
+  if (alone_.in_list) return true;
+  ++counters_.factorizations;
+  const std::span<double> entries = alone_.factors.begin(plan_->columns);
+  for (std::size_t k = 0; k < alone_.slot.size(); ++k) {
+    if (alone_.slot[k] >= 0) entries[at(alone_.slot[k])] = values_[k];
+  }
+  return alone_.factors.factorize() && alone_.factors.rcond() > regular;
+}
+
 // solution_, [f; b] in, [x; lambda] out: x follows from b, lambda from f.
-void SaddleSystem::solve_dense() {
+void SaddleSystem::solve_alone() {
   const std::size_t columns = at(plan_->columns);
-  const std::span<double> sides(solution_), found(full_.solution);
-  full_.factors.solve<double>(sides.subspan(columns), found.first(columns));
-  full_.factors.solve_transposed<double>(sides.first(columns), found.subspan(columns));
-  std::swap(solution_, full_.solution);
+  const std::span<double> sides(solution_), found(alone_.solution);
+  if (alone_.in_list) {
+    // The list takes rows in the order of the plan.
+    const std::span<double> x = found.first(columns), lambda = found.subspan(columns);
+    for (std::size_t k = 0; k < columns; ++k) x[at(rows_[k])] = sides[columns + k];
+    factorization_.solve(x, counters_);
+    std::copy_n(sides.begin(), columns, sides.begin() + static_cast<std::ptrdiff_t>(columns));
+    const std::span<double> f = sides.subspan(columns);
+    factorization_.solve_transposed(f, counters_);
+    for (std::size_t k = 0; k < columns; ++k) lambda[k] = f[at(rows_[k])];
+    std::swap(solution_, alone_.solution);
+    return;
+  }
+  alone_.factors.solve<double>(sides.subspan(columns), found.first(columns));
+  alone_.factors.solve_transposed<double>(sides.first(columns), found.subspan(columns));
+  std::swap(solution_, alone_.solution);
 }
 
 void SaddleSystem::solve_places(std::span<const Lanes> b, std::span<Lanes> x) {
-  for (std::size_t k = 0; k < rows_.size(); ++k) full_.side[k] = b[at(rows_[k])];
-  full_.factors.solve<Lanes>(full_.side, full_.places);
-  for (std::size_t c = 0; c < full_.places.size(); ++c) x[at(plan_->coordinate[c])] = full_.places[c];
+  if (alone_.in_list) {
+    std::copy(b.begin(), b.end(), alone_.side.begin());
+    factorization_.solve(alone_.side, counters_);
+    for (std::size_t c = 0; c < alone_.side.size(); ++c) x[at(plan_->coordinate[c])] = alone_.side[c];
+    return;
+  }
+  for (std::size_t k = 0; k < rows_.size(); ++k) alone_.side[k] = b[at(rows_[k])];
+  alone_.factors.solve<Lanes>(alone_.side, alone_.places);
+  for (std::size_t c = 0; c < alone_.places.size(); ++c) x[at(plan_->coordinate[c])] = alone_.places[c];
 }
 
 bool SaddleSystem::solve(std::span<double> f, std::span<double> b) {
@@ -160,8 +202,8 @@ bool SaddleSystem::solve(std::span<double> f, std::span<double> b) {
   const bool is_number = std::all_of(solution_.begin(), solution_.end(), [](double x) { return !std::isnan(x); });
   if (!is_number)
     std::fill(solution_.begin(), solution_.end(), std::numeric_limits<double>::quiet_NaN());
-  else if (dense_)
-    solve_dense();
+  else if (alone_is_solved_)
+    solve_alone();
   else if (!factorization_.solve_checked(tangent_.values(), solution_, counters_).ok())
     return false;
   for (std::size_t c = 0; c < columns; ++c) f[at(plan_->coordinate[c])] = solution_[c];

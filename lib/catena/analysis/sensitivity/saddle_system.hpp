@@ -56,7 +56,7 @@ class SaddleSystem {
   /// coordinates() and rows; what is no unknown is left alone in f and zero in lambda. False where that fails.
   bool solve(std::span<double> f, std::span<double> b);
   /// Whether solve_places() can be used: A = 0 and Phi_q is square, regular and small.
-  bool solves_in_lanes() const { return dense_ && dependent_.empty(); }
+  bool solves_in_lanes() const { return alone_is_solved_ && dependent_.empty(); }
   /// Phi_q x = b for four right-hand sides; sizes as in solve(); entries of x that are no unknowns stay as they are.
   void solve_places(std::span<const Lanes> b, std::span<Lanes> x);
   /// The dependent row that x of the last solve() does not meet, b of the rows it depends on asking for another change;
@@ -72,8 +72,10 @@ class SaddleSystem {
     double value;
   };
 
-  /// Phi_q where it is factored in full, and by itself.
-  struct Dense {
+  /// Phi_q where it is factored by itself: by a list of its entries, or in full.
+  struct Alone {
+    bool listed = false, in_list = false;  // the list may be used; it has the factors
+    bool has_units = false;
     std::vector<int> slot;  // per entry of Phi_q; -1: the row is not solved with
     DenseFactors factors;
     std::vector<double> solution;
@@ -84,19 +86,21 @@ class SaddleSystem {
   bool make_pattern();
   void find_dependent_entries();
   void find_dense_slots();
-  void solve_dense();
+  bool factorize_alone();
+  void solve_alone();
 
   std::shared_ptr<const Plan> plan_;
   SaddleBlock block_;
   Tangent tangent_;
   std::vector<int> left_out_, rows_, dependent_, place_of_row_;
   bool rows_known_ = false, analyzed_ = false;
-  bool dense_ = false;  // full_ is solved with
+  bool alone_is_solved_ = false;  // alone_ is solved with
+  std::vector<double> values_;    // of Phi_q, for alone_
   std::vector<double> solution_;
   std::vector<DependentEntry> dependent_entries_;  // of Phi_q
   std::vector<double> asked_;                      // b of dependent rows at the last solve()
-  Dense full_;
-  Factorization factorization_;
+  Alone alone_;
+  Factorization factorization_;  // of tangent_, or of alone_ where it has a list
   Counters counters_;
 };
 

@@ -67,6 +67,7 @@ FactorResult Factorization::factorize(std::span<const double> values, Counters& 
   if (values.size() != pattern_.row_index.size())
     throw std::invalid_argument("Factorization: as many values as the pattern has entries are needed");
   factorized_ = size() == 0;
+  margins_are_current_ = false;
   if (factorized_) return {};
   if (form_.structural_rank < size()) return {FactorStatus::singular, form_.unmatched_columns.front()};
   if (kernel_ == Kernel::umfpack) return factor_by_umfpack(values, counters);
@@ -84,6 +85,7 @@ FactorResult Factorization::factorize(std::span<const double> values, Counters& 
 
 FactorResult Factorization::factor_anew(std::span<const double> values, double pivot_tolerance, Counters& counters) {
   ++counters.factorizations;
+  margins_are_current_ = false;
   const FactorResult result = klu_.factor(pattern_, values, pivot_tolerance);
   factorized_ = result.ok();
   pivots_are_fresh_ = true;
@@ -116,6 +118,12 @@ void Factorization::solve(std::span<double> x, Counters& counters) {
   assert(x.size() % static_cast<std::size_t>(size()) == 0);
   counters.solves += static_cast<std::int64_t>(x.size()) / size();
   solve_by_kernel_in_use(x);
+}
+
+void Factorization::solve(std::span<Lanes> x, Counters& counters) {
+  if (!solves_in_lanes()) throw std::logic_error("Factorization: these factors do not solve in lanes");
+  counters.solves += Lanes::count;
+  klu_.solve(x);
 }
 
 void Factorization::solve_transposed(std::span<double> x, Counters& counters) {

@@ -69,6 +69,10 @@ class Factorization {
   /// A X = B in place; x holds one or several right-hand sides, one after the other (size() values each).
   /// Throws std::logic_error without a valid factorization.
   void solve(std::span<double> x, Counters& counters);
+  /// Whether factors at hand can solve for several right-hand sides side by side: KLU's, where all blocks are small.
+  bool solves_in_lanes() const { return factorized_ && !umfpack_in_use_ && klu_.solves_in_lanes(); }
+  /// The same for four right-hand sides at once, where that is so; throws std::logic_error elsewhere.
+  void solve(std::span<Lanes> x, Counters& counters);
   /// A^T X = B in place.
   void solve_transposed(std::span<double> x, Counters& counters);
 
@@ -146,6 +150,7 @@ class Factorization {
   bool parities_are_current_ = false;
   std::vector<signed char> parities_;  // of the pivoting within every block
   std::vector<BlockMargin> margins_;
+  bool margins_are_current_ = false;
   std::vector<int> place_of_row_, cycle_;
   // Rows are scaled anew with every choice of pivots; margins stay those in the scale of the first one.
   std::vector<double> first_scale_;      // per row

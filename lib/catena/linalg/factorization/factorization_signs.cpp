@@ -45,6 +45,7 @@ void Factorization::find_parities() {
 std::span<const BlockMargin> Factorization::block_margins() {
   require_factors();
   if (umfpack_in_use_ || form_.blocks == 0) return {};
+  if (margins_are_current_) return margins_;
   if (!parities_are_current_) find_parities();
   margins_.resize(static_cast<std::size_t>(form_.blocks));
   const std::span<const double> pivots = klu_.pivots();
@@ -62,6 +63,7 @@ std::span<const BlockMargin> Factorization::block_margins() {
     }
     margins_[block] = negative ? BlockMargin{-least, -product} : BlockMargin{least, product};
   }
+  margins_are_current_ = true;
   return margins_;
 }
 

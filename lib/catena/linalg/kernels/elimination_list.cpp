@@ -155,14 +155,20 @@ double EliminationList::largest_multiplier(int place) const {
   return largest;
 }
 
-void EliminationList::solve(std::span<double> x, std::span<const double> row_factor,
-                            std::span<const double> column_factor) {
-  double* const w = work_.data();
-  for (std::size_t p = 0; p < row_.size(); ++p) w[p] = x[at(row_[p])] * row_factor[at(row_[p])] * inverse_[p];
+template <class V>
+void EliminationList::solve_in(std::span<V> x, std::span<const double> row_factor,
+                               std::span<const double> column_factor, std::span<V> work) const {
+  V* const w = work.data();
+  for (std::size_t p = 0; p < row_.size(); ++p) w[p] = inverse_[p] * (row_factor[at(row_[p])] * x[at(row_[p])]);
   for (std::size_t k = 0; k < entries_.size(); ++k) w[entries_[k].target] -= factor_[k] * w[entries_[k].source];
   for (std::size_t p = 0; p < row_.size(); ++p)
-    x[at(column_[p])] = column_factor.empty() ? w[p] : w[p] * column_factor[at(column_[p])];
+    x[at(column_[p])] = column_factor.empty() ? w[p] : column_factor[at(column_[p])] * w[p];
 }
+
+template void EliminationList::solve_in(std::span<double>, std::span<const double>, std::span<const double>,
+                                        std::span<double>) const;
+template void EliminationList::solve_in(std::span<Lanes>, std::span<const double>, std::span<const double>,
+                                        std::span<Lanes>) const;
 
 void EliminationList::solve_transposed(std::span<double> x, std::span<const double> row_factor,
                                        std::span<const double> column_factor) {

@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "catena/linalg/kernels/lanes.hpp"
 #include "catena/linalg/patterns/sparse_pattern.hpp"
 
 namespace catena {
@@ -43,7 +44,14 @@ class EliminationList {
 
   /// x = C A^-1 R x for one right-hand side, A the scaled matrix: R `row_factor`, C `column_factor` (empty: 1), in the
   /// caller's numbering.
-  void solve(std::span<double> x, std::span<const double> row_factor, std::span<const double> column_factor);
+  void solve(std::span<double> x, std::span<const double> row_factor, std::span<const double> column_factor) {
+    solve_in(x, row_factor, column_factor, std::span(work_));
+  }
+  /// The same for four right-hand sides at once, rounded as one by one. Allocates at the first call.
+  void solve(std::span<Lanes> x, std::span<const double> row_factor, std::span<const double> column_factor) {
+    lanes_.resize(row_.size());
+    solve_in(x, row_factor, column_factor, std::span(lanes_));
+  }
   /// x = R A^-T C x.
   void solve_transposed(std::span<double> x, std::span<const double> row_factor, std::span<const double> column_factor);
 
@@ -61,6 +69,9 @@ class EliminationList {
   void list_products();
   void list_entries(const SparsePattern& pattern);
   int slot_in_block(int row_place, int column_place) const;
+  template <class V>
+  void solve_in(std::span<V> x, std::span<const double> row_factor, std::span<const double> column_factor,
+                std::span<V> work) const;
 
   std::vector<int> row_, column_, block_start_;
   std::vector<int> row_place_, first_of_;  // place of every row; where the block of every place begins
@@ -71,6 +82,7 @@ class EliminationList {
   std::vector<Entry> entries_;
   std::vector<double> entry_scale_, value_, factor_;  // factor_: per entry of entries_
   std::vector<double> pivot_, inverse_, work_;
+  std::vector<Lanes> lanes_;
 };
 
 }  // namespace catena

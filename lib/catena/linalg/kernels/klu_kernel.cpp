@@ -112,6 +112,7 @@ struct KluKernel::Handles {
   void choose_scale(const SparsePattern& pattern, std::span<const double> values);
   double* scale(std::span<const double> values);
   std::int64_t measure_pivots();
+  std::int64_t measure_few_pivots();
   bool pivots_suit();
   bool column_suits(int place) const;
 };
@@ -140,10 +141,30 @@ double* KluKernel::Handles::scale(std::span<const double> values) {
   return scaled.data();
 }
 
+/// The same of a few.
+std::int64_t KluKernel::Handles::measure_few_pivots() {
+  double low = std::numeric_limits<double>::infinity(), high = 0, total = 0;
+  std::int64_t suspects = 0;
+  const double* const pivot = pivots();
+  for (std::size_t k = 0; k < size(); ++k) {
+    const double magnitude = std::abs(pivot[k]);
+    low = magnitude < low ? magnitude : low;
+    high = magnitude > high ? magnitude : high;
+    total += magnitude;
+    suspects += magnitude >= harmless_pivot ? 0 : 1;
+  }
+  least = low;
+  largest = high;
+  if (!std::isfinite(total)) least = largest = std::numeric_limits<double>::quiet_NaN();
+  return suspects;
+}
+
 /// Their least and largest magnitude; returns how many are not harmless. In lanes, since compilers may not change the
 /// order of comparisons.
 std::int64_t KluKernel::Handles::measure_pivots() {
   constexpr std::size_t lanes = 8;
+  // Of a few pivots setting up the lanes costs more than all else.
+  if (size() < 4 * lanes) return measure_few_pivots();
   double low[lanes], high[lanes] = {}, sum[lanes] = {}, few[lanes] = {};
   std::fill(low, low + lanes, std::numeric_limits<double>::infinity());
   const double* pivot = pivots();
@@ -155,16 +176,14 @@ std::int64_t KluKernel::Handles::measure_pivots() {
     few[lane] += magnitude >= harmless_pivot ? 0.0 : 1.0;
   };
   std::size_t k = 0;
-  // Of a few pivots setting up the lanes costs more than all else.
-  const std::size_t used = size() < 4 * lanes ? 1 : lanes;
-  for (; used == lanes && k + lanes <= size(); k += lanes) {
+  for (; k + lanes <= size(); k += lanes) {
     for (std::size_t lane = 0; lane < lanes; ++lane) take(k + lane, lane);
   }
   for (; k < size(); ++k) take(k, 0);
   double total = 0, suspects = 0;
-  for (std::size_t lane = 0; lane < used; ++lane) total += sum[lane], suspects += few[lane];
-  least = *std::min_element(low, low + used);
-  largest = *std::max_element(high, high + used);
+  for (std::size_t lane = 0; lane < lanes; ++lane) total += sum[lane], suspects += few[lane];
+  least = *std::min_element(low, low + lanes);
+  largest = *std::max_element(high, high + lanes);
   if (!std::isfinite(total)) least = largest = std::numeric_limits<double>::quiet_NaN();
   return static_cast<std::int64_t>(suspects);
 }
@@ -260,6 +279,10 @@ void KluKernel::solve(std::span<double> x) {
   klu_solve(h.symbolic, h.numeric, h.symbolic->n, static_cast<int>(x.size() / h.size()), x.data(), &h.common);
   multiply(x, h.column_unit);
 }
+
+bool KluKernel::solves_in_lanes() const { return handles_->list.has_value(); }
+
+void KluKernel::solve(std::span<Lanes> x) { handles_->list->solve(x, handles_->row_scale, handles_->column_unit); }
 
 void KluKernel::solve_transposed(std::span<double> x) {
   Handles& h = *handles_;

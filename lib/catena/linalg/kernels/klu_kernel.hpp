@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "catena/linalg/kernels/factor_result.hpp"
+#include "catena/linalg/kernels/lanes.hpp"
 #include "catena/linalg/patterns/sparse_pattern.hpp"
 
 namespace catena {
@@ -42,6 +43,8 @@ class KluKernel {
   bool has_factors() const;
 
   void solve(std::span<double> x);             ///< A X = B in place, x.size() / n right-hand sides
+  bool solves_in_lanes() const;                ///< all blocks are small
+  void solve(std::span<Lanes> x);              ///< four right-hand sides at once, where it does
   void solve_transposed(std::span<double> x);  ///< A^T X = B in place
 
   double rcond() const;                       ///< smallest over largest pivot magnitude of R^-1 A D

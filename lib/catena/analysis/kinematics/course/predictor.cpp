@@ -15,6 +15,14 @@ using Weights = std::array<double, max_nodes>;
 // carry weights of 6 s^5 (qdd known) or 2 s^3 at s times their distance, would amplify their rounding, 2e-16, to more
 // than 1e-6: s = (1e10/12)^(1/5) and (1e10/4)^(1/3).
 constexpr double one_instant_of_five = 1 / 60.8, one_instant_of_three = 1 / 1357.0;
+// Instants that the polynomial goes through where only q is known there, six apart.
+constexpr int most_places = 4;
+// Six are used where the term of the fifth order is this part of that of the third, so that the errors, of the sixth
+// and of the fourth, differ alike. Coordinates of the first bodies tell: a wrong choice costs an iteration.
+constexpr double smaller = 0.5;
+constexpr std::size_t looked_at = 48;
+// Steps shorter than this part of the one ahead: rounding, 2e-16, would be multiplied by (1 + s)^5 at s steps ahead.
+constexpr double short_step = 0.25;
 
 struct Nodes {
   int count = 0;
@@ -60,10 +68,38 @@ std::array<Weights, 3> weights_at(const Nodes& nodes, double t) {
   return result;
 }
 
+/// Weights of q at six instants, the last one first: in the polynomials through four and through all of them, and in
+/// their terms of the third and fifth order,  [q_0 ... q_k] (t - t_0) ... (t - t_k-1).
+struct Places {
+  std::array<double, max_nodes> t{};
+  Weights four{}, six{}, third{}, fifth{};
+
+  bool are_apart(double ahead) const {
+    const double way = ahead - t[0];
+    bool apart = true;
+    for (std::size_t k = 0; k + 1 < t.size(); ++k) apart &= (t[k] - t[k + 1]) * way > short_step * way * way;
+    return apart;
+  }
+  void weigh(double ahead) {
+    const auto way = [&](std::size_t k) { return ahead - t[k]; };
+    const double of_third = way(0) * way(1) * way(2), of_fifth = of_third * way(3) * way(4);
+    const double of_four = of_third * way(3), of_six = of_fifth * way(5);
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      const auto apart = [&](std::size_t j) { return j == k ? 1 : t[k] - t[j]; };
+      const double before = apart(0) * apart(1) * apart(2) * apart(3);
+      const double inverse = 1 / before, of_all = inverse / (apart(4) * apart(5)), part = 1 / way(k);
+      if (k < 4) third[k] = of_third * inverse, four[k] = of_four * inverse * part;
+      fifth[k] = of_fifth * of_all;
+      six[k] = of_six * of_all * part;
+    }
+  }
+};
+
 }  // namespace
 
-Predictor::Predictor(std::size_t size) : ring_(capacity) {
-  for (Instant& instant : ring_) instant.q.resize(size), instant.qd.resize(size), instant.qdd.resize(size);
+Predictor::Predictor(std::size_t size) : ring_(capacity), rates_(rate_capacity) {
+  for (Instant& instant : ring_) instant.q.resize(size);
+  for (Rates& rates : rates_) rates.qd.resize(size), rates.qdd.resize(size);
 }
 
 void Predictor::push(double t, std::span<const double> q, std::span<const double> qd, std::span<const double> qdd) {
@@ -72,17 +108,50 @@ void Predictor::push(double t, std::span<const double> q, std::span<const double
     count_ = std::min(count_ + 1, capacity);
   }
   Instant& instant = ring_[static_cast<std::size_t>(head_)];
+  Rates& rates = rates_[static_cast<std::size_t>(head_ % rate_capacity)];
   instant.t = t;
   instant.derivatives = qd.empty() ? 0 : qdd.empty() ? 1 : 2;
   std::copy(q.begin(), q.end(), instant.q.begin());
-  std::copy(qd.begin(), qd.end(), instant.qd.begin());
-  std::copy(qdd.begin(), qdd.end(), instant.qdd.begin());
+  std::copy(qd.begin(), qd.end(), rates.qd.begin());
+  std::copy(qdd.begin(), qdd.end(), rates.qdd.begin());
+}
+
+// Six instants at which only q is known, of steps that were not much shorter than the one ahead; false: others.
+bool Predictor::predict_from_places(double t, std::span<double> q) const {
+  if (count_ < max_nodes) return false;
+  Places places;
+  std::array<const double*, max_nodes> data{};
+  for (int k = 0; k < max_nodes; ++k) {
+    if (derivatives(k) > 0) return false;
+    places.t[static_cast<std::size_t>(k)] = back(k).t;
+    data[static_cast<std::size_t>(k)] = back(k).q.data();
+  }
+  if (!places.are_apart(t)) return false;
+  places.weigh(t);
+  const double *a = data[0], *b = data[1], *c = data[2], *d = data[3], *e = data[4], *f = data[5];
+  const auto sum = [&](const Weights& w, std::size_t i) {
+    return w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i] + w[4] * e[i] + w[5] * f[i];
+  };
+  double third[3] = {}, fifth[3] = {};
+  const Weights& w3 = places.third;
+  for (std::size_t first = 0; first + 3 <= std::min(q.size(), looked_at); first += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i = first + k;
+      third[k] += std::abs(w3[0] * a[i] + w3[1] * b[i] + w3[2] * c[i] + w3[3] * d[i]);
+      fifth[k] += std::abs(sum(places.fifth, i));
+    }
+  }
+  const auto shrink = [&](int kind) { return fifth[kind] <= smaller * third[kind]; };
+  const Weights& w = shrink(0) && shrink(1) && shrink(2) ? places.six : places.four;
+  for (std::size_t i = 0; i < q.size(); ++i) q[i] = sum(w, i);
+  return true;
 }
 
 bool Predictor::predict(double t, std::span<double> q, std::span<double> qd, std::span<double> qdd) const {
   if (count_ == 0) return false;
+  if (qd.empty() && qdd.empty() && predict_from_places(t, q)) return true;
   // With derivatives two instants suffice; without, up to four.
-  const int instants = std::min(count_, back(0).derivatives > 0 ? 2 : capacity);
+  const int instants = std::min(count_, back(0).derivatives > 0 ? 2 : most_places);
   const double one_instant = back(0).derivatives == 2 ? one_instant_of_five : one_instant_of_three;
   Nodes nodes;
   std::array<const double*, max_nodes> data{};
@@ -93,11 +162,11 @@ bool Predictor::predict(double t, std::span<double> q, std::span<double> qd, std
     if (std::any_of(first, first + nodes.count, near)) continue;
     ++taken;
     const int group = nodes.count;
-    for (int d = 0; d <= instant.derivatives && nodes.count < max_nodes; ++d) {
+    for (int d = 0; d <= derivatives(k) && nodes.count < max_nodes; ++d) {
       const auto n = static_cast<std::size_t>(nodes.count++);
       nodes.t[n] = instant.t;
       nodes.group[n] = group;
-      data[n] = (d == 0 ? instant.q : d == 1 ? instant.qd : instant.qdd).data();
+      data[n] = (d == 0 ? instant.q : d == 1 ? rates(k).qd : rates(k).qdd).data();
     }
   }
   const auto weights = weights_at(nodes, t);
