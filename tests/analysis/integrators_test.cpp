@@ -1,6 +1,11 @@
 // What methods of integration have of their own, beside the correct motion that all of them give.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "catena/analysis/motion/stage_sums.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 
 namespace catena {
@@ -39,6 +44,28 @@ std::vector<double> state_after_fall(const DynamicsOptions& options) {
     state.insert(state.end(), s.qd.begin(), s.qd.end());
   });
   return state;
+}
+
+// Sums of vectors are those of plain loops to the last bit, whatever the length and the instructions in use.
+TEST(Integrators, SumsOverStagesAreRoundedAsPlainLoopsRoundThem) {
+  const std::array<StageTerm, 3> terms{StageTerm{0, 0.3}, StageTerm{2, -1.7}, StageTerm{1, 0.9}};
+  for (std::size_t size = 0; size <= 40; ++size) {
+    std::array<std::vector<double>, 3> slope;
+    for (std::size_t k = 0; k < slope.size(); ++k) {
+      for (std::size_t i = 0; i < size; ++i) slope[k].push_back(std::sin(1.0 + static_cast<double>(7 * i + k)));
+    }
+    for (const bool begins : {false, true}) {
+      std::vector<double> found(size, 0.5), expected(size, begins ? 0.5 : 0.0);
+      for (std::size_t i = 0; i < size; ++i) {
+        for (const StageTerm& term : terms)
+          expected[i] += 0.01 * term.weight * slope[static_cast<std::size_t>(term.stage)][i];
+      }
+      add_stages(
+          begins ? std::span<const double>(found) : std::span<const double>(), 0.01, terms,
+          [&](int stage) { return slope[static_cast<std::size_t>(stage)].data(); }, found);
+      EXPECT_EQ(found, expected);
+    }
+  }
 }
 
 TEST(Integrators, OfOrderEightConvergeWithItAtFixedSteps) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/motion/stage_watcher.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/motion_adjoint.hpp"
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
@@ -166,11 +167,14 @@ std::array<Long, 2> difference(const PendulumDesign& design, std::size_t p, cons
   return result;
 }
 
-/// The library's motion of the same pendulum, with the instants of its steps.
-class SteppedMotion final : public RowObserver {
+/// The library's motion of the same pendulum, with the instants of its steps; `watches`: derivatives are carried along
+/// with the stages of the run, else along recomputed ones.
+class SteppedMotion final : public RowObserver, public WatchesStages {
  public:
-  SteppedMotion(const PendulumDesign& design, double until, double tolerance)
-      : scene_(read_scene(SourceText("motion", text_of_pendulum(design)), diagnostics_)), models_(*scene_, 1000) {
+  SteppedMotion(const PendulumDesign& design, double until, double tolerance, bool watches)
+      : watches_(watches),
+        scene_(read_scene(SourceText("motion", text_of_pendulum(design)), diagnostics_)),
+        models_(*scene_, 1000) {
     model_ = models_.model(scene_->parameters, {});
     std::vector<int> parameters;
     for (std::size_t p = 0; p < PendulumDesign::names.size(); ++p) parameters.push_back(static_cast<int>(p));
@@ -182,6 +186,7 @@ class SteppedMotion final : public RowObserver {
     report = motion.run(TimeGrid::instant(until), {.velocity = true}, *this);
   }
   bool wants_stretches() const override { return true; }
+  StageWatcher* stage_watcher() override { return watches_ ? forward->stage_watcher() : nullptr; }
   bool cover(const MotionStretch& stretch) override {
     if (instants.empty()) instants.push_back(stretch.from);
     instants.push_back(stretch.to);
@@ -202,6 +207,7 @@ class SteppedMotion final : public RowObserver {
   bool found = false;
 
  private:
+  bool watches_;
   static std::string text_of_pendulum(const PendulumDesign& design) {
     std::string numbers;
     for (std::size_t p = 0; p < PendulumDesign::names.size(); ++p)
@@ -237,12 +243,13 @@ PendulumDesign random_pendulum(RandomNumbers& random) {
 }
 
 TEST(DiscreteGradients, OfADoublePendulumAreThoseOfItsStepsAndOfItsEquations) {
-  for (unsigned seed = 1; seed <= 4; ++seed) {
+  for (unsigned seed = 1; seed <= 7; ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     const PendulumDesign design = random_pendulum(random);
     const double tolerance = seed % 2 == 0 ? 1e-7 : 1e-10;
-    SteppedMotion motion(design, 1.5, tolerance);
+    const bool watches = seed > 4;
+    SteppedMotion motion(design, 1.5, tolerance, watches);
     ASSERT_TRUE(motion.report.ok()) << motion.report.message;
     ASSERT_TRUE(motion.found) << motion.forward->why();
     ASSERT_GT(motion.instants.size(), 5u);
@@ -266,13 +273,73 @@ TEST(DiscreteGradients, OfADoublePendulumAreThoseOfItsStepsAndOfItsEquations) {
         const double own = motion.forward->configuration(p / 4)[3 * body + 2].d[p % 4];
         const double size = std::max(1.0, std::abs(own));
         EXPECT_NEAR(own, static_cast<double>(discrete[body]), of_own * size) << PendulumDesign::names[p] << body;
-        EXPECT_NEAR(back[body][p], static_cast<double>(discrete[body]), of_back * size)
-            << PendulumDesign::names[p] << body;
+        if (!watches) {
+          EXPECT_NEAR(back[body][p], static_cast<double>(discrete[body]), of_back * size)
+              << PendulumDesign::names[p] << body;
+        }
         for (const double gradient : {own, back[body][p]})
           EXPECT_NEAR(gradient, static_cast<double>(exact[body]), 10 * tolerance * size)
               << PendulumDesign::names[p] << body;
       }
     }
+  }
+}
+
+/// Rows between the ends of steps, by stages that were watched and by recomputed ones: derivatives of places and rates.
+class BothWays final : public RowObserver, public WatchesStages {
+ public:
+  BothWays(MotionDerivatives& watching, MotionDerivatives& recomputing)
+      : watching_(watching), recomputing_(recomputing) {}
+  bool wants_stretches() const override { return true; }
+  StageWatcher* stage_watcher() override { return watching_.stage_watcher(); }
+  bool cover(const MotionStretch& stretch) override {
+    watching_.cover(stretch);
+    recomputing_.cover(stretch);
+    return true;
+  }
+  bool observe(const Snapshot& snapshot) override {
+    EXPECT_TRUE(watching_.find(snapshot)) << watching_.why();
+    EXPECT_TRUE(recomputing_.find(snapshot)) << recomputing_.why();
+    const auto one = watching_.configuration(0), other = recomputing_.configuration(0);
+    for (std::size_t c = 0; c < one.size(); ++c) {
+      for (std::size_t p = 0; p < one[c].d.size(); ++p)
+        EXPECT_NEAR(one[c].d[p], other[c].d[p], 1e-9 * std::max(1.0, std::abs(other[c].d[p]))) << snapshot.t;
+    }
+    ++rows;
+    return true;
+  }
+  int rows = 0;
+
+ private:
+  MotionDerivatives &watching_, &recomputing_;
+};
+
+// Between the ends of steps, and across instants at which a function of time has a kink and which a parameter moves.
+TEST(DiscreteGradients, OfWatchedStagesAreThoseOfRecomputedOnes) {
+  const auto text = [](const std::string& force) {
+    return R"({"catena": 1, "parameters": {"l": 0.7, "m": 1.5, "k": 20, "s": 0.4321}, "bodies": {
+      "one": {"rod": {"from": [0, 0], "to": ["l", 0]}, "mass": "m"},
+      "two": {"rod": {"from": ["l", 0], "to": ["=2*l", 0]}, "mass": 1}},
+      "constraints": [{"type": "revolute", "i": "ground", "j": "one.from"},
+                      {"type": "revolute", "i": "one.to", "j": "two.from"}],
+      "forces": [{"type": "torsion_spring", "i": "one", "j": "two", "k": "k"})" +
+           force + R"(], "analyses": []})";
+  };
+  const std::string kick = R"(, {"type": "torque", "i": "two",
+    "torque": {"step": {"t0": "s", "t1": "=s+0.2", "from": 0, "to": 3, "order": 3}}})";
+  for (const std::string& scene_text : {text(""), text(kick)}) {
+    Diagnostics diagnostics(10);
+    const auto scene = read_scene(SourceText("motion", scene_text), diagnostics);
+    ASSERT_TRUE(scene) << diagnostics.text();
+    SceneModels models(*scene, 1000);
+    Dynamics motion(models.model(scene->parameters, {}), {}, {.method = IntegrationMethod::rk8, .tolerance = 1e-9});
+    const std::vector<int> parameters{0, 1, 2, 3};
+    const DesignModels designs = models.designs(scene->parameters, {}, parameters);
+    MotionDerivatives watching(motion.evaluator(), designs, 4, GivenByModel{});
+    MotionDerivatives recomputing(motion.evaluator(), designs, 4, GivenByModel{});
+    BothWays observer(watching, recomputing);
+    ASSERT_TRUE(motion.run(TimeGrid::range(0, 1.5, 0.03), {.velocity = true}, observer).ok());
+    EXPECT_EQ(observer.rows, 51);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "cases/resting_chains.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/motion/stage_watcher.hpp"
 #include "catena/analysis/sensitivity/kinematic_derivatives.hpp"
 #include "catena/analysis/sensitivity/motion_adjoint.hpp"
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
@@ -128,9 +129,10 @@ DesignModels designs_of(int rods, std::span<const int> parameters) {
 }
 
 /// Passes steps on to the one that differentiates, if there is one, and keeps where the motion ended.
-class Watcher final : public RowObserver {
+class Watcher final : public RowObserver, public WatchesStages {
  public:
   explicit Watcher(StateDerivatives* derivatives) : derivatives_(derivatives) {}
+  StageWatcher* stage_watcher() override { return derivatives_ ? derivatives_->stage_watcher() : nullptr; }
   bool wants_stretches() const override { return derivatives_; }
   bool cover(const MotionStretch& stretch) override {
     derivatives_->cover(stretch);

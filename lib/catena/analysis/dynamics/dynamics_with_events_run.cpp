@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "catena/analysis/dynamics/dynamics_with_events.hpp"
+#include "catena/analysis/motion/stage_watcher.hpp"
 #include "catena/analysis/run/report_parts.hpp"
 
 namespace catena {
@@ -15,7 +16,7 @@ namespace {
 constexpr int most_at_once = 100;
 
 /// Passes rows on and counts them.
-class CountingObserver final : public RowObserver {
+class CountingObserver final : public RowObserver, public WatchesStages {
  public:
   CountingObserver(RowObserver& target, std::int64_t& rows) : target_(target), rows_(rows) {}
   bool observe(const Snapshot& snapshot) override {
@@ -25,6 +26,7 @@ class CountingObserver final : public RowObserver {
   bool proceed(double t) override { return target_.proceed(t); }
   bool wants_stretches() const override { return target_.wants_stretches(); }
   bool cover(const MotionStretch& stretch) override { return target_.cover(stretch); }
+  StageWatcher* stage_watcher() override { return stage_watcher_of(target_); }
 
  private:
   RowObserver& target_;

@@ -10,38 +10,34 @@
 #include <span>
 
 #include "catena/analysis/motion/tableau.hpp"
-#include "catena/linalg/kernels/lanes.hpp"
 
 namespace catena {
 
-/// `slope(stage)`: where its vector begins. `begin`: empty, as zero, or of the size of `out`, which it may be. `sum`:
+namespace detail {
+
+/// from + sum weight vector; `from`: nullptr for zero.
+struct WeightedVectors {
+  const double* from = nullptr;
+  std::size_t terms = 0;
+  std::array<const double*, 17> vector;
+  std::array<double, 17> weight;
+};
+void add_weighted(const WeightedVectors& sum, std::size_t size, double* out);
+
+}  // namespace detail
+
+/// `slope(stage)`: where its vector begins. `begin`: empty, as zero, or of the size of `out`, which it may be. `of`:
 /// at most 17 terms.
 template <class Terms, class Slope>
-void add_stages(std::span<const double> begin, double h, const Terms& sum, Slope&& slope, std::span<double> out) {
-  std::array<const double*, 17> k;
-  std::array<double, 17> weight;
-  std::size_t terms = 0;
-  for (const StageTerm& term : sum) {
-    assert(terms < k.size());
-    k[terms] = slope(term.stage);
-    weight[terms++] = h * term.weight;
+void add_stages(std::span<const double> begin, double h, const Terms& of, Slope&& slope, std::span<double> out) {
+  detail::WeightedVectors sum;
+  for (const StageTerm& term : of) {
+    assert(sum.terms < sum.vector.size());
+    sum.vector[sum.terms] = slope(term.stage);
+    sum.weight[sum.terms++] = h * term.weight;
   }
-  const double* const from = begin.empty() ? nullptr : begin.data();
-  std::size_t i = 0;
-  for (; i + 2 * Lanes::count <= out.size(); i += 2 * Lanes::count) {
-    Lanes x = from ? Lanes::load(from + i) : Lanes(), y = from ? Lanes::load(from + i + Lanes::count) : Lanes();
-    for (std::size_t t = 0; t < terms; ++t) {
-      x += weight[t] * Lanes::load(k[t] + i);
-      y += weight[t] * Lanes::load(k[t] + i + Lanes::count);
-    }
-    x.store(out.data() + i);
-    y.store(out.data() + i + Lanes::count);
-  }
-  for (; i < out.size(); ++i) {
-    double x = from ? from[i] : 0;
-    for (std::size_t t = 0; t < terms; ++t) x += weight[t] * k[t][i];
-    out[i] = x;
-  }
+  sum.from = begin.empty() ? nullptr : begin.data();
+  detail::add_weighted(sum, out.size(), out.data());
 }
 
 }  // namespace catena

@@ -1,5 +1,7 @@
 // MotionDerivatives: over steps of the motion and at instants in them by tangents, several steps at a time.
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
 #include "catena/base/at.hpp"
@@ -48,35 +50,115 @@ bool MotionDerivatives::catch_up(double t) {
   return why().empty();
 }
 
-bool MotionDerivatives::take_block(std::span<const Step> steps) {
-  const auto begin = crossed_ == steps.front().from ? &Track::after : &Track::end;
-  take_values(steps.front().begin, begin);
+void MotionDerivatives::begin_block(double from, const RecomputedSteps::Vector& y) {
+  const auto begin = crossed_ == from ? &Track::after : &Track::end;
+  take_values(y, begin);
   for (Track& track : tracks_) track.begin = track.*begin;
+}
+
+void MotionDerivatives::end_block() {
+  for (Track& track : tracks_) track.end = track.begin;
+  take_values(step_.end, &Track::end);
+  from_rows(rows_.end, &Track::end);
+}
+
+bool MotionDerivatives::take_block(std::span<const Step> steps) {
+  begin_block(steps.front().from, steps.front().begin);
   std::size_t count = tangents_ ? again_->join(steps, RecomputedSteps::From::front, step_) : 0;
+  stages_recomputed_ = true;
   by_tangents_ = count > 0 && take_by_tangents();
   if (!by_tangents_) {
     count = 1;
     step_ = steps.front();
     if (!take_in_dual_numbers()) return false;
   }
+  note_block(steps.first(count));
+  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(count));
+  return true;
+}
+
+// step_ has been taken: it is made of these.
+void MotionDerivatives::note_block(std::span<const Step> steps) {
   from_ = step_.from;
   to_ = step_.to;
   has_step_ = true;
   interpolant_ready_ = false;
   ++blocks_;
-  block_.assign(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(count));
-  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(count));
-  return true;
+  block_.assign(steps.begin(), steps.end());
 }
 
 bool MotionDerivatives::take_by_tangents() {
   to_rows(&Track::begin, rows_.begin);
   tangents_->step(*again_, step_.to - step_.from, rows_.begin, rows_.end);
   place().y = step_.end;
+  watched_.place_serves = false;
   if (!tangents_->project(place(), step_.to, Side::before, rows_.end)) return false;
-  for (Track& track : tracks_) track.end = track.begin;
-  take_values(step_.end, &Track::end);
-  from_rows(rows_.end, &Track::end);
+  end_block();
+  return true;
+}
+
+// Steps that were not watched come first. The motion's state is that which was shown, but for whole turns.
+bool MotionDerivatives::begin_stages(double from, double to, std::span<const double> y) {
+  watched_.stages = 0;
+  if (!started_ || !why().empty() || (!pending_.empty() && !catch_up(from)) || to_ != from) return false;
+  if (!(watched_.begun && watched_.from == from) && !begin_watched(from, y.subspan(n_, n_))) return false;
+  watched_.from = from;
+  watched_.to = to;
+  watched_.stages = 1;
+  return true;
+}
+
+bool MotionDerivatives::begin_watched(double from, std::span<const double> rates) {
+  const auto begin = crossed_ == from ? &Track::after : &Track::end;
+  const DesignVector& y = tracks_.front().*begin;
+  for (std::size_t c = 0; c < n_; ++c) {
+    if (std::abs(rates[c] - y[n_ + c].v) > RecomputedSteps::same_state * std::max(1.0, std::abs(rates[c])))
+      return false;
+  }
+  if (!watched_.place_serves || !goes_on_) {
+    for (std::size_t i = 0; i < 2 * n_; ++i) place().y[i] = y[i].v;
+    if (!RecomputedSteps::evaluate(place(), from, Side::after)) return false;
+  }
+  // What is known of the last block is overwritten: nothing inside of it can be asked for any more.
+  from_ = to_;
+  has_step_ = false;
+  to_rows(begin, rows_.begin);
+  tangents_->step_stage(0, MotionTangents::place_of(place()), 0, rows_.begin);
+  watched_.begun = true;
+  return true;
+}
+
+void MotionDerivatives::watch_stage(int s, double t, Side side, std::span<const double> y,
+                                    std::span<const double> slope, EquationsOfMotion& equations) {
+  if (watched_.stages != s) return;
+  watched_.stages = equations.is_dependent() ? 0 : s + 1;
+  if (watched_.stages == 0) return;
+  const MotionTangents::Place place{.t = t,
+                                    .side = side,
+                                    .evaluator = equations.evaluator(),
+                                    .equations = equations,
+                                    .qd = y.subspan(n_, n_),
+                                    .qdd = slope.subspan(n_, n_),
+                                    .lambda = equations.multipliers()};
+  tangents_->step_stage(s, place, watched_.to - watched_.from, rows_.begin);
+}
+
+bool MotionDerivatives::take_watched(const Step& step) {
+  const bool watched = std::exchange(watched_.stages, 0) == dormand_prince_8().stages && watched_.from == step.from &&
+                       watched_.to == step.to;
+  watched_.begun = false;
+  if (!watched) return false;
+  watched_.place_serves = false;
+  place().y = step.end;
+  if (!RecomputedSteps::evaluate(place(), step.to, Side::before)) return false;
+  begin_block(step.from, step.begin);
+  step_ = step;
+  tangents_->finish_step(step.to - step.from, rows_.begin, rows_.end);
+  tangents_->project_with_factors(place(), rows_.end);
+  end_block();
+  watched_.place_serves = by_tangents_ = true;
+  stages_recomputed_ = false;
+  note_block(std::span(&step, 1));
   return true;
 }
 
@@ -100,6 +182,8 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
   if (inside && !by_tangents_) return false;
   if (inside) {
     if (!interpolant_ready_) {
+      if (!stages_recomputed_ && !again_->recompute(step_)) return false;
+      stages_recomputed_ = true;
       if (!again_->prepare_interpolant(step_)) return false;
       tangents_->prepare_interpolant(*again_, h, rows_.begin, rows_.end);
       interpolant_ready_ = true;
@@ -109,13 +193,14 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
     to_rows(jumps ? &Track::after : has_step_ && t == from_ ? &Track::begin : &Track::end, rows_.now);
   }
   RecomputedSteps::Stage& there = place();
+  watched_.place_serves = false;
   std::copy(snapshot.q.begin(), snapshot.q.end(), there.y.begin());
   for (std::size_t c = 0; c < n_; ++c) there.y[n_ + c] = jumps ? tracks_.front().after[n_ + c].v : snapshot.qd[c];
   if (!tangents_->project(there, t, Side::after, rows_.now)) return false;
   const bool accelerates = !snapshot.qdd.empty();
   if (accelerates) {
     if (!RecomputedSteps::evaluate(there, t, Side::after)) return false;
-    tangents_->slope(there, rows_.now, rows_.slope);
+    tangents_->slope(MotionTangents::place_of(there), rows_.now, rows_.slope);
   }
   const std::size_t width = tangents_->width();
   for (std::size_t k = 0; k < tracks_.size(); ++k) {

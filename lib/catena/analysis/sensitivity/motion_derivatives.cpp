@@ -193,7 +193,7 @@ void MotionDerivatives::cover(const MotionStretch& stretch) {
   last_end_ = step->end;
   const std::span<const double> y(step->begin);
   if (!started_ && !start(step->from, y.first(n_), y.subspan(n_))) return;
-  pending_.push_back(*std::move(step));
+  if (!take_watched(*step)) pending_.push_back(*std::move(step));
   const MovingInstant& instant = instant_at(stretch.to);
   goes_on_ = instant.order == 0 && stretch.ended_by < 0;
   if (instant.order == 1 || instant.moves()) {
@@ -201,7 +201,7 @@ void MotionDerivatives::cover(const MotionStretch& stretch) {
       cross();
     else if (why().empty())
       singular(stretch.to);
-  } else if (!tangents_ || pending_.size() >= RecomputedSteps::most_at_once) {
+  } else if (!pending_.empty() && (!tangents_ || pending_.size() >= RecomputedSteps::most_at_once)) {
     take_block(pending_);
   }
 }

@@ -4,9 +4,11 @@
 //   [ M      Phi_q^T ] [ qdd_p    ]   [ (Q - M qdd - Phi_q^T lambda)_p ]
 //   [ Phi_q  0       ] [ lambda_p ] = [ gamma_p - (Phi_q qdd)_p        ]      partials along q_p, qd_p
 //
-// by the method of Dormand and Prince of order 8 over the very steps that the motion took: every stage is recomputed
-// from the state at the step's start, once for all parameters (motion_tangents.hpp), and steps that are shorter than
-// this method needs, between instants that are asked for, several as one (recomputed_steps.hpp). Where constraints
+// by the method of Dormand and Prince of order 8 over the very steps that the motion took, once for all parameters
+// (motion_tangents.hpp). Where the motion takes steps of this method, and lets them be seen, its own stages are those
+// of the derivatives, with their factors (motion/stage_watcher.hpp). Else every stage is recomputed from the state at
+// the step's start, and steps that are shorter than this method needs, between instants that are asked for, are taken
+// several as one (recomputed_steps.hpp). Where constraints
 // depend on each other, and for models with laws of state, ropes over pulleys or massless bodies, step by step in dual
 // numbers. At the step's end positions and velocities are those of the motion, and their derivatives are projected as
 // these were: Phi_q q_p = -Phi_p, and the same for velocities, changed least in the metric of the masses. What a
@@ -28,6 +30,7 @@
 #include <memory>
 #include <optional>
 
+#include "catena/analysis/motion/stage_watcher.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/analysis/sensitivity/motion_tangents.hpp"
@@ -38,12 +41,13 @@
 
 namespace catena {
 
-class MotionDerivatives final : public StateDerivatives {
+class MotionDerivatives final : public StateDerivatives, private StageWatcher {
  public:
   MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start);
 
   void cover(const MotionStretch& stretch) override;
   bool find(const Snapshot& snapshot) override;
+  StageWatcher* stage_watcher() override { return tangents_ ? this : nullptr; }
   /// As how many steps the motion's were taken so far.
   int blocks() const { return blocks_; }
 
@@ -64,6 +68,17 @@ class MotionDerivatives final : public StateDerivatives {
     MotionTangents::Rows begin, end, now, slope;
   };
 
+  bool begin_stages(double from, double to, std::span<const double> y) override;
+  void watch_stage(int s, double t, Side side, std::span<const double> y, std::span<const double> slope,
+                   EquationsOfMotion& equations) override;
+  /// The first stage of the steps that are tried from here; false: it has none.
+  bool begin_watched(double from, std::span<const double> rates);
+  /// Takes the step that was watched, if it is this one; false: it is to be recomputed.
+  bool take_watched(const Step& step);
+  /// What begins where the last block ended, at this state; then what ends at that of step_.
+  void begin_block(double from, const RecomputedSteps::Vector& y);
+  void end_block();
+  void note_block(std::span<const Step> steps);
   bool start(double t, std::span<const double> q, std::span<const double> qd);
   /// Positions and velocities of the motion to y of all tracks.
   void take_values(const RecomputedSteps::Vector& values, DesignVector Track::*y);
@@ -119,6 +134,14 @@ class MotionDerivatives final : public StateDerivatives {
   bool goes_on_ = false;              // the motion goes on from where the last step ended ...
   RecomputedSteps::Vector last_end_;  // ... here
   TangentRows rows_;
+  /// The step whose stages are watched: how many were seen of all, one after the other.
+  struct Watched {
+    double from = 0, to = 0;
+    int stages = 0;
+    bool begun = false;         // the first one is known, whatever the step's length
+    bool place_serves = false;  // place() has what is known where it begins
+  } watched_;
+  bool stages_recomputed_ = false;  // of the last block, in again_
 };
 
 }  // namespace catena

@@ -49,48 +49,62 @@ void MotionTangents::add_parameters(double t, Side side, std::span<const double>
   }
 }
 
-void MotionTangents::solve(Stage& stage, const Rows& loads, const Rows& rows, double* x) {
+void MotionTangents::solve(EquationsOfMotion& equations, const Rows& loads, const Rows& rows, double* x) {
   for (std::size_t first = 0; first < width_; first += parameters_at_once) {
     for (std::size_t c = 0; c < n_; ++c) f_[c] = Lanes::load(loads.data() + c * width_ + first);
     for (std::size_t r = 0; r < b_.size(); ++r) b_[r] = -Lanes::load(rows.data() + r * width_ + first);
-    stage.equations.solve_motion(f_, b_, x_, mu_, scratch_);
+    equations.solve_motion(f_, b_, x_, mu_, scratch_);
     for (const int c : plan_.coordinate) x_[at(c)].store(x + at(c) * width_ + first);
     for (std::size_t r = 0; r < mu_.size(); ++r) mu_[r].store(lambda_.data() + r * width_ + first);
   }
 }
 
-void MotionTangents::slope(Stage& stage, const Rows& y, Rows& slope) {
-  const std::span<const double> qd = std::span<const double>(stage.y).subspan(n_);
-  const std::span<const double> qdd = std::span<const double>(stage.slope).subspan(n_);
-  mechanism_.set_motion(stage.evaluator, qd, qdd, stage.side);
+MotionTangents::Place MotionTangents::place_of(Stage& stage) {
+  const std::size_t n = stage.y.size() / 2;
+  return {.t = stage.t,
+          .side = stage.side,
+          .evaluator = stage.evaluator,
+          .equations = stage.equations,
+          .qd = std::span<const double>(stage.y).subspan(n),
+          .qdd = std::span<const double>(stage.slope).subspan(n),
+          .lambda = stage.lambda};
+}
+
+void MotionTangents::slope(const Place& place, const Rows& y, Rows& slope) {
+  mechanism_.set_motion(place.evaluator, place.qd, place.qdd, place.side);
   std::fill(loads_.begin(), loads_.end(), 0.0);
   std::fill(rows_.begin(), rows_.end(), 0.0);
   const TangentSums sums{.loads = loads_, .bends = rows_};
   const std::span<const double> all(y);
-  mechanism_.add_along(stage.evaluator, stage.lambda, all.first(n_ * width_), all.subspan(n_ * width_), width_, sums);
-  add_parameters(stage.t, stage.side, stage.lambda, qdd, sums);
+  mechanism_.add_along(place.evaluator, place.lambda, all.first(n_ * width_), all.subspan(n_ * width_), width_, sums);
+  add_parameters(place.t, place.side, place.lambda, place.qdd, sums);
   std::copy(y.begin() + static_cast<std::ptrdiff_t>(n_ * width_), y.end(), slope.begin());
-  solve(stage, loads_, rows_, slope.data() + n_ * width_);
+  solve(place.equations, loads_, rows_, slope.data() + n_ * width_);
 }
 
 void MotionTangents::step(RecomputedSteps& steps, double h, const Rows& begin, Rows& end) {
-  const Tableau& table = dormand_prince_8();
-  for (int s = 0; s < table.stages; ++s) {
-    add_stages(
-        begin, h, table.a[at(s)], [this](int stage) { return slopes_[at(stage)].data(); }, stage_);
-    slope(steps.stage(s), stage_, slopes_[at(s)]);
-  }
+  for (int s = 0; s < dormand_prince_8().stages; ++s) step_stage(s, place_of(steps.stage(s)), h, begin);
+  finish_step(h, begin, end);
+}
+
+void MotionTangents::step_stage(int s, const Place& place, double h, const Rows& begin) {
   add_stages(
-      begin, h, table.b, [this](int stage) { return slopes_[at(stage)].data(); }, end);
+      begin, h, dormand_prince_8().a[at(s)], [this](int stage) { return slopes_[at(stage)].data(); }, stage_);
+  slope(place, stage_, slopes_[at(s)]);
+}
+
+void MotionTangents::finish_step(double h, const Rows& begin, Rows& end) const {
+  add_stages(
+      begin, h, dormand_prince_8().b, [this](int stage) { return slopes_[at(stage)].data(); }, end);
 }
 
 void MotionTangents::prepare_interpolant(RecomputedSteps& steps, double h, const Rows& begin, const Rows& end) {
   const Tableau& table = dormand_prince_8();
-  slope(steps.stage(table.stages), end, slopes_[at(table.stages)]);
+  slope(place_of(steps.stage(table.stages)), end, slopes_[at(table.stages)]);
   for (int s = table.stages + 1; s < static_cast<int>(table.c.size()); ++s) {
     add_stages(
         begin, h, table.a[at(s)], [this](int stage) { return slopes_[at(stage)].data(); }, stage_);
-    slope(steps.stage(s), stage_, slopes_[at(s)]);
+    slope(place_of(steps.stage(s)), stage_, slopes_[at(s)]);
   }
 }
 
@@ -103,10 +117,18 @@ void MotionTangents::interpolate(double part, double h, const Rows& begin, const
 }
 
 bool MotionTangents::project(Stage& stage, double t, Side side, Rows& y) {
-  const std::span<const double> values(stage.y);
+  stage.t = t;
+  stage.side = side;
   if (plan_.rows == 0) return true;
-  if (!stage.equations.factorize(t, side, values.first(n_)) || stage.equations.is_dependent()) return false;
-  mechanism_.set_motion(stage.evaluator, values.subspan(n_), {}, side);
+  if (!stage.equations.factorize(t, side, std::span<const double>(stage.y).first(n_)) || stage.equations.is_dependent())
+    return false;
+  project_with_factors(stage, y);
+  return true;
+}
+
+void MotionTangents::project_with_factors(Stage& stage, Rows& y) {
+  if (plan_.rows == 0) return;
+  mechanism_.set_motion(stage.evaluator, std::span<const double>(stage.y).subspan(n_), {}, stage.side);
   const std::span<const double> all(y);
   for (const bool velocity : {false, true}) {
     std::fill(rows_.begin(), rows_.end(), 0.0);
@@ -115,14 +137,13 @@ bool MotionTangents::project(Stage& stage, double t, Side side, Rows& y) {
     if (velocity) {
       mechanism_.add_along(stage.evaluator, {}, all.first(n_ * width_), all.subspan(n_ * width_), width_, sums);
     }
-    add_parameters(t, side, {}, {}, sums);
+    add_parameters(stage.t, stage.side, {}, {}, sums);
     double* part = y.data() + (velocity ? n_ * width_ : 0);
     for (std::size_t c = 0; c < n_; ++c) {
       for (std::size_t p = 0; p < width_; ++p) loads_[c * width_ + p] = masses_[c] * part[c * width_ + p];
     }
-    solve(stage, loads_, rows_, part);
+    solve(stage.equations, loads_, rows_, part);
   }
-  return true;
 }
 
 }  // namespace catena

@@ -26,16 +26,31 @@ class MotionTangents {
   MotionTangents(const Evaluator& evaluator, std::vector<DesignMechanism*> groups);
 
   std::size_t width() const { return width_; }
+  /// A state at which accelerations were found, with the factors at hand.
+  struct Place {
+    double t;
+    Side side;
+    const Evaluator& evaluator;
+    EquationsOfMotion& equations;
+    std::span<const double> qd, qdd, lambda;
+  };
+  static Place place_of(Stage& stage);
+
   /// Derivatives at the end of a recomputed step, before it is projected, from those at its beginning.
   void step(RecomputedSteps& steps, double h, const Rows& begin, Rows& end);
+  /// The same stage by stage, in their order, and then the end; `h`: of the whole step.
+  void step_stage(int s, const Place& place, double h, const Rows& begin);
+  void finish_step(double h, const Rows& begin, Rows& end) const;
   /// The slopes of the interpolant's stages, after step() and with the projected end.
   void prepare_interpolant(RecomputedSteps& steps, double h, const Rows& begin, const Rows& end);
   void interpolate(double part, double h, const Rows& begin, const Rows& end, Rows& y) const;
   /// Projects the derivatives at the state of `stage`, whose factors are made; false where constraints depend on each
   /// other.
   bool project(Stage& stage, double t, Side side, Rows& y);
-  /// Derivatives of accelerations and multipliers at a stage that was evaluated: rows n() ... 2 n() of `slope`.
-  void slope(Stage& stage, const Rows& y, Rows& slope);
+  /// The same with the factors that the stage has.
+  void project_with_factors(Stage& stage, Rows& y);
+  /// Derivatives of accelerations and multipliers where these were found: rows n() ... 2 n() of `slope`.
+  void slope(const Place& place, const Rows& y, Rows& slope);
   /// Rows of multipliers of the last slope().
   const Rows& multipliers() const { return lambda_; }
   int reached_elements() const;
@@ -44,7 +59,7 @@ class MotionTangents {
   void add_parameters(double t, Side side, std::span<const double> lambda, std::span<const double> qdd,
                       const TangentSums& sums);
   /// Solves for all parameters: loads and rows (negative right-hand sides) to x over coordinates, and lambda_.
-  void solve(Stage& stage, const Rows& loads, const Rows& rows, double* x);
+  void solve(EquationsOfMotion& equations, const Rows& loads, const Rows& rows, double* x);
 
   const Plan& plan_;
   std::vector<DesignMechanism*> groups_;

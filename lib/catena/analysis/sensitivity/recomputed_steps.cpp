@@ -22,8 +22,6 @@ constexpr int blocks_between_tries = 8;
 // allows, less a tenth, and changes by no more than what these powers are worth far from it.
 constexpr int order = 8;
 constexpr double length_left = 0.9, most_longer = 1.5, least_shorter = 0.3;
-// States before and after an instant that differ by less are one: whole turns are 6.
-constexpr double same_state = 1e-6;
 // Below this misfits are rounding.
 constexpr double rounding = 1e-14;
 
@@ -126,15 +124,16 @@ bool RecomputedSteps::prepare_interpolant(const Step& step) {
   return true;
 }
 
-double RecomputedSteps::misfit(const Step& step) const {
-  const double h = step.to - step.from;
+double RecomputedSteps::misfit(const Step& step) {
+  moved_.resize(size_);
+  add_stages(
+      {}, step.to - step.from, dormand_prince_8().b, [this](int k) { return stages_[at(k)]->slope.data(); }, moved_);
   double off[2] = {0, 0}, way[2] = {0, 0};
-  for (std::size_t i = 0; i < step.end.size(); ++i) {
-    double moved = 0;
-    for (const StageTerm& term : dormand_prince_8().b) moved += h * term.weight * stages_[at(term.stage)]->slope[i];
-    const std::size_t kind = i >= size_ / 2;
-    off[kind] = std::max(off[kind], std::abs(step.begin[i] + moved - step.end[i]));
-    way[kind] = std::max(way[kind], std::abs(moved));
+  for (const std::size_t kind : {0, 1}) {
+    for (std::size_t i = kind * size_ / 2; i < (kind + 1) * size_ / 2; ++i) {
+      off[kind] = std::max(off[kind], std::abs(step.begin[i] + moved_[i] - step.end[i]));
+      way[kind] = std::max(way[kind], std::abs(moved_[i]));
+    }
   }
   return std::max(way[0] > 0 ? off[0] / way[0] : 0, way[1] > 0 ? off[1] / way[1] : 0);
 }

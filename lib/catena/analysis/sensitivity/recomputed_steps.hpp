@@ -55,6 +55,8 @@ class RecomputedSteps {
   };
   /// Steps of the motion that are joined to one, at most.
   static constexpr std::size_t most_at_once = 16;
+  /// States before and after an instant that differ by less are one: whole turns are 6.
+  static constexpr double same_state = 1e-6;
 
   explicit RecomputedSteps(const Evaluator& evaluator);
 
@@ -85,13 +87,14 @@ class RecomputedSteps {
 
  private:
   /// How far the recomputed end of a step lies from that of the motion, relative to what it moves by.
-  double misfit(const Step& step) const;
+  double misfit(const Step& step);
 
   const Evaluator& evaluator_;
   std::size_t size_;
   std::string why_not_;
   std::vector<std::unique_ptr<Stage>> stages_;
   double singular_at_ = 0;
+  Vector moved_;              // by a step, as it was recomputed
   double reach_ = 0;          // how long steps that are joined may be together, s
   double single_misfit_ = 0;  // of a step by itself
   int waits_ = 1;             // blocks until longer ones are tried

@@ -19,6 +19,8 @@ namespace {
 // Coordinates that assembly may not change: in weights of the others, so many that what is left of a change is
 // rounding.
 constexpr double held_weight = 1e16;
+// Places that differ by this part of the largest one are where they were given, but for rounding.
+constexpr double rounding_of_places = 1e-14;
 
 /// The points at which one body is attached: by constraints, or by forces where these have none.
 struct AttachedPoints {
@@ -72,6 +74,10 @@ std::vector<DesignScalar> squared_radii(const DesignModel& model, const Plan& pl
   return squares;
 }
 
+bool is_zero(const std::vector<double>& side) {
+  return std::all_of(side.begin(), side.end(), [](double x) { return x == 0; });
+}
+
 bool is_held(const BasicBody<double>& body, int k) {
   return k == 0 ? body.hold_x : k == 1 ? body.hold_y : body.hold_angle;
 }
@@ -110,12 +116,16 @@ bool StartDerivatives::prepare_places(std::span<const double> q) {
   place_multipliers_.assign(at(plan_.rows), 0.0);
   std::vector<double> f(q.size()), given = evaluator_.given_configuration();
   move_whole_turns(evaluator_, given);
+  double extent[2] = {evaluator_.length_scale(), 1};  // of positions, of angles
+  for (int c = 0; c < 3 * plan_.moving; ++c)
+    extent[c % 3 == 2 ? 1 : 0] = std::max(extent[c % 3 == 2 ? 1 : 0], std::abs(q[at(c)]));
   for (int c = 0; c < 3 * plan_.moving; ++c) {
     const auto& body = evaluator_.model().bodies[at(plan_.model_body[at(c / 3)])];
     const double radius = radius_[at(c / 3)];
     place_weight_[at(c)] = (c % 3 == 2 ? radius * radius : 1) * (is_held(body, c % 3) ? held_weight : 1);
     if (!by_model_.places) continue;
-    apart_[at(c)] = q[at(c)] - given[at(c)];
+    const double apart = q[at(c)] - given[at(c)];
+    if (std::abs(apart) > rounding_of_places * extent[c % 3 == 2 ? 1 : 0]) apart_[at(c)] = apart;
   }
   const auto weigh = [&] {
     for (int c = 0; c < 3 * plan_.moving; ++c) assembly_.add_diagonal(c, place_weight_[at(c)]);
@@ -147,7 +157,7 @@ bool StartDerivatives::find_places(DesignMechanism& mechanism, int count, std::s
   std::vector<Taylor<DesignScalar>> rows(b.size());
   mechanism.set_state(q);
   mechanism.rows(rows);
-  mechanism.add_constraint_loads(mu, loads);
+  if (!is_zero(place_multipliers_)) mechanism.add_constraint_loads(mu, loads);
   for (std::size_t p = 0; p < at(count); ++p) {
     for (std::size_t c = 0; c < f.size(); ++c) {
       f[c] = place_weight_[c] * estimate[c].d[p] - loads[c].d[p];
@@ -156,6 +166,11 @@ bool StartDerivatives::find_places(DesignMechanism& mechanism, int count, std::s
         f[c] -= place_weight_[c] / square[c / 3].v * square[c / 3].d[p] * apart_[c];
     }
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].f.d[p];
+    // Masses, and what acts later, move no place.
+    if (is_zero(f) && is_zero(b)) {
+      for (const int c : plan_.coordinate) q[at(c)].d[p] = 0;
+      continue;
+    }
     if (!assembly_.solve(f, b)) return singular();
     for (const int c : plan_.coordinate) q[at(c)].d[p] = f[at(c)];
     if (const int row = assembly_.contradicted_row(); row >= 0) {
@@ -248,6 +263,7 @@ bool StartDerivatives::prepare_velocities(DesignMechanism& mechanism, std::span<
   mechanism.rows(rows);
   for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].d.v;  // nu
   if (!solve_keeping(wanted_, load, b, v, rate_multipliers_)) return false;
+  rests_ = is_zero(v) && is_zero(rate_multipliers_);
   double largest = 0, off = 0;
   for (const int coordinate : plan_.coordinate) {
     const std::size_t c = at(coordinate);
@@ -273,17 +289,17 @@ bool StartDerivatives::find_velocities(DesignMechanism& mechanism, int count, st
   const std::vector<DesignScalar> mu(rate_multipliers_.begin(), rate_multipliers_.end());
   std::vector<DesignScalar> loads(qd.size());
   std::vector<Taylor<DesignScalar>> rows(b.size());
-  mechanism.set_state(q, qd);
+  // Velocities that are nothing but rounding would ask for solutions that are nothing else either.
+  std::vector<DesignScalar> rates(qd.begin(), qd.end());
+  if (rests_) std::fill(rates.begin(), rates.end(), DesignScalar());
+  mechanism.set_state(q, rates);
   mechanism.rows(rows);
-  mechanism.add_constraint_loads(mu, loads);
-  const auto is_zero = [](const std::vector<double>& side) {
-    return std::all_of(side.begin(), side.end(), [](double x) { return x == 0; });
-  };
+  if (!is_zero(rate_multipliers_)) mechanism.add_constraint_loads(mu, loads);
   for (std::size_t p = 0; p < at(count); ++p) {
     for (const int coordinate : plan_.coordinate) {
       const std::size_t c = at(coordinate);
       goal[c] = given_[c] ? given_velocity(mechanism, coordinate).d[p] : 0;
-      load[c] = -mechanism.mass(coordinate).d[p] * qd[c].v - loads[c].d[p];
+      load[c] = -mechanism.mass(coordinate).d[p] * rates[c].v - loads[c].d[p];
     }
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].d.d[p];
     // From rest no parameter moves them.

@@ -67,6 +67,7 @@ class StartDerivatives {
   std::vector<double> radius_, place_weight_, apart_, place_multipliers_, rate_multipliers_;
   std::vector<double> prepared_q_, prepared_qd_;  // the start that was prepared; empty: none
   std::vector<char> given_, follows_;             // by coordinate
+  bool rests_ = false;                            // all velocities are zero
   std::string why_, lack_;
 };
 

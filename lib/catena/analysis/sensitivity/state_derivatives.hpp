@@ -25,6 +25,8 @@
 
 namespace catena {
 
+class StageWatcher;
+
 /// The models with derivatives: parameter k belongs to group k / 4, its derivative number k % 4.
 using DesignModels = std::vector<std::shared_ptr<const DesignModel>>;
 
@@ -43,6 +45,8 @@ class StateDerivatives {
   virtual bool find(const Snapshot& snapshot) = 0;
   /// A stretch of the motion that find() may ask about from now on, if the motion has a memory.
   virtual void cover(const MotionStretch& stretch) { static_cast<void>(stretch); }
+  /// Who may see the stages of the motion's steps; nullptr: nobody needs to.
+  virtual StageWatcher* stage_watcher() { return nullptr; }
   /// Why there are none; a sentence without full stop, empty where nothing went wrong so far.
   const std::string& why() const { return why_; }
   /// Why some columns have none where others have; empty if all have.

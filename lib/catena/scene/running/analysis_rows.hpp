@@ -8,6 +8,7 @@
 
 #include "catena/analysis/adjoint/measure_adjoint.hpp"
 #include "catena/analysis/measures/measure_set.hpp"
+#include "catena/analysis/motion/stage_watcher.hpp"
 #include "catena/analysis/run/row_accuracy.hpp"
 #include "catena/analysis/run/row_observer.hpp"
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
@@ -18,7 +19,7 @@ namespace catena {
 
 struct AnalysisContext;
 
-class AnalysisRows final : public RowObserver {
+class AnalysisRows final : public RowObserver, public WatchesStages {
  public:
   /// `run`: the first and the last instant. `columns` and `context` must outlive this object.
   AnalysisRows(const ColumnSet& columns, AnalysisContext& context, const Model& model, const Plan& plan,
@@ -65,6 +66,9 @@ class AnalysisRows final : public RowObserver {
     return timed_ && !rows_alone_ && !make_look_ && (!measures_.empty() || derivatives_);
   }
   bool cover(const MotionStretch& stretch) override;
+  StageWatcher* stage_watcher() override {
+    return wants_stretches() && derivatives_ ? derivatives_->stage_watcher() : nullptr;
+  }
 
   std::int64_t rows() const { return rows_; }
   const ColumnSet& columns() const { return columns_; }

@@ -117,6 +117,11 @@ void RungeKutta::observe_rates() {
                  motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
 }
 
+bool RungeKutta::shows_stages() const {
+  return watcher_ && tableau().order == 8 && projects() && !trials_.project_stages() && !partitions() &&
+         watcher_->begin_stages(t_, t_new_, y_);
+}
+
 bool RungeKutta::evaluate_stages(double h) {
   const Tableau& table = tableau();
   const bool watching = watches_energy();
@@ -126,6 +131,7 @@ bool RungeKutta::evaluate_stages(double h) {
     energy_.note_power(motion_, 0, y_);
   }
   ratios_.begin();
+  const bool shows = shows_stages();
   for (std::size_t s = 1; s < static_cast<std::size_t>(table.stages); ++s) {
     stage_.combine(table.a[s], h, y_, y_stage_);
     // The last stages lie at the end exactly: a function of time may jump there.
@@ -135,6 +141,7 @@ bool RungeKutta::evaluate_stages(double h) {
     if (trials_.project_stages() && !project_stage(t, side)) return false;
     if (partitions() && !solve_dependent(t, side, y_stage_)) return false;
     if (!derivative(t, side, y_stage_, stage_[s])) return false;
+    if (shows) watcher_->watch_stage(static_cast<int>(s), t, side, y_stage_, stage_[s], motion_.equations());
     ratios_.note(s, motion_.equations().smallest_pivot_ratio());
     if (watching) energy_.note_power(motion_, s, y_stage_);
   }

@@ -38,6 +38,7 @@
 #include "catena/analysis/dynamics/integrators/stages.hpp"
 #include "catena/analysis/dynamics/integrators/step_energy.hpp"
 #include "catena/analysis/dynamics/integrators/step_order.hpp"
+#include "catena/analysis/motion/stage_watcher.hpp"
 
 namespace catena {
 
@@ -88,6 +89,9 @@ class RungeKutta final : public Integrator {
   bool dips() const;
 
   bool meets_constraints() const override { return options_.keeping != ConstraintKeeping::stabilisation; }
+
+  /// Shows the stages of order 8 from now on, of steps that are projected at their ends alone; nullptr: to nobody.
+  void show_stages_to(StageWatcher* watcher) { watcher_ = watcher; }
 
  private:
   enum class Trial { made, again, failed };
@@ -149,7 +153,10 @@ class RungeKutta final : public Integrator {
   StepEnds ends() const { return {t_ - t_before_, y_before_, y_, stage_[0], slope_}; }
   void work_by_ends(double s, std::span<double> y);
 
+  bool shows_stages() const;
+
   Motion motion_;
+  StageWatcher* watcher_ = nullptr;
   std::unique_ptr<CoordinatePartition> partition_;  // only where it is asked for
   std::unique_ptr<BranchKeeping> branches_;         // only where steps can be judged
   RungeKuttaOptions options_;
