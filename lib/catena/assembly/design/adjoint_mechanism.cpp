@@ -1,3 +1,4 @@
+#include "catena/assembly/curve_contacts.hpp"
 #include "catena/assembly/design/adjoint_mechanism.hpp"
 
 #include <type_traits>
@@ -50,6 +51,7 @@ AdjointMechanism::AdjointMechanism(const Evaluator& evaluator)
     : plan_(evaluator.shared_plan()), model_(&evaluator.model()) {
   for (int p = 0; p <= plan_->bodies; ++p) origin_.push_back(p < plan_->bodies ? evaluator.origin(p) : Vec2<double>{});
   scale_.assign(model_->elements.size(), 1.0);
+  contacts_.resize(at(plan_->contacts));
   for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
     using E = ElementOf<decltype(list)>;
     if constexpr (HasSquaredValue<E>) {
@@ -73,13 +75,8 @@ void AdjointMechanism::set_motion(const Evaluator& evaluator, std::span<const do
                                      : model_->functions[k].continue_from(there, side, there);
   }
   for (std::size_t c = 0; c < rates_.size(); ++c) rates_[c] = qd.empty() ? 0 : qd[c];
-  evaluator.curve_places(places_);
-  for (const CurvePlace& place : places_) {
-    const ElementRecord& record = model_->elements[at(place.element)];
-    with_list(model_->constraints, record.type, [&](const auto& list) {
-      if constexpr (SearchesCurve<ElementOf<decltype(list)>>) list[at(record.index)].element.go_to(place);
-    });
-  }
+  for_each_contact(*plan_, model_->constraints, contacts_,
+                   [&](const auto& entry, CurvePlace& contact) { contact = evaluator.contact(entry.id); });
   for (int p = 0; p <= plan_->bodies; ++p) {
     const Frame<double>& f = evaluator.frames()[at(p)];
     Frame<Series>& m = motion_[at(p)];
@@ -121,7 +118,7 @@ void AdjointMechanism::add_constraints_by_q(const AdjointWeights& weights, std::
           by_qd[c] += sign * 2 * along * f.phi.d;
         }
       }
-    } else if constexpr (detail::is_differentiated<E>) {
+    } else if constexpr (detail::has_adjoint<E>) {
       constexpr int columns = 3 * E::bodies;
       using D = Dual<Series, columns>;
       for (int e = 0; e < block.size(); ++e) {
@@ -132,7 +129,8 @@ void AdjointMechanism::add_constraints_by_q(const AdjointWeights& weights, std::
         Frame<D> j;
         if constexpr (E::bodies == 2) j = seed<Series, columns>(f.j, 3);
         D rows[E::rows];
-        entry.element.phi(Arguments<D>{i, j, D(detail::value_of_entry(entry, values_)), f.ground}, rows);
+        const CurvePlace& contact = contact_of(block, contacts_, block.entry[at(e)]);
+        entry.element.phi(Arguments<D>{i, j, D(detail::value_of_entry(entry, values_)), f.ground, &contact}, rows);
         for (int r = 0; r < E::rows; ++r) {
           const std::size_t row = at(block.row(e) + r);
           const double bend = weights.bend.empty() ? 0 : scale_[at(entry.id)] * weights.bend[row];
@@ -216,7 +214,7 @@ void AdjointMechanism::add_curvature(const AdjointWeights& weights, std::span<do
           by_q[c] += (b == 0 ? -1 : 1) * turning * weights.w[c];
         }
       }
-    } else if constexpr (detail::is_differentiated<E>) {
+    } else if constexpr (detail::has_adjoint<E>) {
       constexpr int columns = 3 * E::bodies;
       using Along = Dual<double, 1>;
       using D = Dual<Along, columns>;
@@ -233,7 +231,9 @@ void AdjointMechanism::add_curvature(const AdjointWeights& weights, std::span<do
         Frame<D> j;
         if constexpr (E::bodies == 2) j = seed<Along, columns>(f.j, 3);
         D rows[E::rows];
-        entry.element.phi(Arguments<D>{i, j, D(Along(detail::value_of_entry(entry, values_).f)), f.ground}, rows);
+        const D value(Along(detail::value_of_entry(entry, values_).f));
+        const CurvePlace& contact = contact_of(block, contacts_, block.entry[at(e)]);
+        entry.element.phi(Arguments<D>{i, j, value, f.ground, &contact}, rows);
         for (int r = 0; r < E::rows; ++r) {
           const double lambda = scale_[at(entry.id)] * weights.lambda[at(block.row(e) + r)];
           for (int k = 0; k < columns; ++k) {

@@ -93,7 +93,7 @@ class AdjointMechanism {
   std::vector<Frame<Series>> motion_;   // per plan body, relative
   std::vector<Taylor<double>> values_;  // of functions, at the present time
   std::vector<double> rates_;           // qd
-  std::vector<CurvePlace> places_;      // where contacts on curves are
+  std::vector<CurvePlace> contacts_;    // as Pose::contacts
 
   bool is_immobile(int body) const { return body >= plan_->moving && body < plan_->bodies; }
   /// A body's motion with derivatives by parameters: immobile bodies move with them, and so do the angles of particles,

@@ -4,6 +4,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "catena/assembly/curve_contacts.hpp"
 #include "catena/assembly/design/adjoint_mechanism.hpp"
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/base/at.hpp"
@@ -176,7 +177,7 @@ AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const Design
   for_each_list(plan.blocks, model.constraints, [&](const auto& block, const auto& list, int) {
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
     // Of slides, which search along curves from where they are, nothing is tried: a parameter may be in them.
-    if constexpr (detail::is_differentiated<Plain>)
+    if constexpr (detail::has_adjoint<Plain>)
       collect(block, list, constraints_, [](const auto& element) { return phi_moves(element); });
     else if constexpr (detail::is_slide<Plain>)
       collect(block, list, constraints_, [](const auto&) { return true; });
@@ -234,7 +235,7 @@ void AdjointMechanism::add_constraints(const DesignMechanism& mechanism, const R
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
     const std::vector<int>& places = reached.constraints_[type_number++];
     if (places.empty()) return;
-    if constexpr (detail::is_differentiated<Plain> || detail::is_slide<Plain>) {
+    if constexpr (detail::has_adjoint<Plain> || detail::is_slide<Plain>) {
       for (const int e : places) {
         const auto& entry = list[at(block.entry[at(e)])];
         DesignSeries c;
@@ -242,7 +243,8 @@ void AdjointMechanism::add_constraints(const DesignMechanism& mechanism, const R
         const double scale = scale_[at(entry.id)];
         DesignSeries rows[E::rows];
         const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
-        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground}, rows);
+        const CurvePlace& contact = contact_of(block, contacts_, block.entry[at(e)]);
+        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground, &contact}, rows);
         for (int r = 0; r < E::rows; ++r) {
           const std::size_t row = at(block.row(e) + r);
           if (!weights.phi.empty()) sum -= DesignScalar(scale * weights.phi[row]) * rows[r].f;
@@ -252,7 +254,7 @@ void AdjointMechanism::add_constraints(const DesignMechanism& mechanism, const R
         if (weights.lambda.empty()) continue;
         // lambda^T Phi_q w: without what the function of time itself changes by.
         const auto g = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame_along);
-        entry.element.phi(Arguments<DesignSeries>{g.i, g.j, DesignSeries(c.f), g.ground}, rows);
+        entry.element.phi(Arguments<DesignSeries>{g.i, g.j, DesignSeries(c.f), g.ground, &contact}, rows);
         for (int r = 0; r < E::rows; ++r) sum -= DesignScalar(scale * weights.lambda[at(block.row(e) + r)]) * rows[r].d;
       }
     }

@@ -14,11 +14,15 @@ namespace catena::detail {
 using DesignSeries = Taylor<DesignScalar>;
 
 /// Elements that AdjointMechanism and MechanismTangents differentiate: not those that AdjointMechanism::why_not()
-/// refuses.
+/// refuses in a model that others use too.
 template <class E>
 constexpr bool is_differentiated =
     !std::is_same_v<E, CustomConstraint<double>> && !std::is_same_v<E, CustomForce<double>> && !Joining<E> &&
     !Sharing<E> && !SearchesCurve<E>;
+
+/// What AdjointMechanism differentiates: elements that search along curves as well, from the contacts that it is given.
+template <class E>
+constexpr bool has_adjoint = is_differentiated<E> || SearchesCurve<E>;
 
 /// Equations that show a few scalars alone: slides of contacts, and what only C++ can make.
 template <class E>
