@@ -69,11 +69,10 @@ bool PhasedMeasures::look_at(const MotionStretch& stretch, double t, Vector& y, 
   if (!state) return lose(t, "the motion could not be looked at");
   y.assign(state->q.begin(), state->q.end());
   y.insert(y.end(), state->qd.begin(), state->qd.end());
-  std::vector<CurvePlace> there;
-  state->evaluator.curve_places(there);
+  const std::vector<CurvePlace>& there = state->evaluator.curve_places();
   evaluator().go_to_curve_places(there);
   for (Group& group : groups()) group.mechanism.go_to_curve_places(there);
-  if (places) *places = std::move(there);
+  if (places) *places = there;
   return true;
 }
 

@@ -1,8 +1,8 @@
-#include "catena/assembly/curve_contacts.hpp"
 #include "catena/assembly/design/adjoint_mechanism.hpp"
 
 #include <type_traits>
 
+#include "catena/assembly/curve_contacts.hpp"
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/base/at.hpp"
 

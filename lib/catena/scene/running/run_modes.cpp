@@ -50,7 +50,7 @@ void give_real(const AnalysisContext& context, const ModesReport& report, std::s
   set_field_gradient(context, result, "omega", number, gradient.value_or(none), trouble);
 }
 
-/// Of one of a pair, (growth + i omega)^2 = -z with z = omega2 - i imaginary: d(growth + i omega) = -dz / (2 (growth +
+/// Of one of a pair, (growth + i omega)^2 = -z with z = omega2 + i imaginary: d(growth + i omega) = -dz / (2 (growth +
 /// i omega)).
 void give_pair(const AnalysisContext& context, const ModesReport& report, std::size_t k,
                const std::optional<std::vector<std::complex<double>>>& gradient, const std::string& trouble,
@@ -62,7 +62,7 @@ void give_pair(const AnalysisContext& context, const ModesReport& report, std::s
   for (std::size_t p = 0; gradient && p < parameters; ++p) {
     const std::complex<double> z = (*gradient)[p], turned = -z / (2.0 * rate);
     parts[0][p] = z.real();
-    parts[1][p] = -z.imag();
+    parts[1][p] = z.imag();
     parts[2][p] = turned.imag();
     parts[3][p] = turned.real();
   }
@@ -93,7 +93,7 @@ void differentiate(const AnalysisContext& context, Modes& analysis, const ModesR
     if (flutters) {
       std::optional<std::vector<std::complex<double>>> gradient;
       if (found && !several)
-        gradient = derivatives.gradient_of_pair({report.omega2[k], -report.imaginary[k]}, report.shapes[k]);
+        gradient = derivatives.gradient_of_pair({report.omega2[k], report.imaginary[k]}, report.shapes[k]);
       give_pair(context, report, k, gradient, why(gradient.has_value()), result);
       continue;
     }

@@ -20,22 +20,18 @@
 #include "catena/linalg/pivoting/lemke.hpp"
 
 namespace catena {
-namespace {
-
-/// A variable of the pivots: x that one unit of it makes, and the row that it is complementary to.
-struct PivotVariable {
-  enum class Kind : unsigned char { force, slip } kind = Kind::force;
-  std::size_t place = 0;
-  double across = 0, along = 0;  ///< of x, in its own units
-  std::size_t row = 0;           ///< of w
-  double sign = 1;               ///< of w in that row
-};
-
-}  // namespace
-
 /// The linear problem of the given choices by place.
 class ContactProblem::Pivots {
  public:
+  /// A variable of the pivots: x that one unit of it makes, and the row that it is complementary to.
+  struct Variable {
+    enum class Kind : unsigned char { force, slip } kind = Kind::force;
+    std::size_t place = 0;
+    double across = 0, along = 0;  ///< of x, in its own units
+    std::size_t row = 0;           ///< of w
+    double sign = 1;               ///< of w in that row
+  };
+
   Pivots(const ContactProblem& problem, const std::vector<Choice>& choices)
       : problem_(problem), choices_(choices), known_(problem.x.size(), 0.0) {
     for (std::size_t k = 0; k < problem.place.size(); ++k) {
@@ -47,23 +43,21 @@ class ContactProblem::Pivots {
 
  private:
   void add(std::size_t k);
-  double entry(const PivotVariable& row, const PivotVariable& column) const;
-  double constant(const PivotVariable& row) const;
+  double entry(const Variable& row, const Variable& column) const;
+  double constant(const Variable& row) const;
   double limit(std::size_t k) const {
     return choices_[k].slipped ? problem_.place[k].kinetic : problem_.place[k].limit;
   }
-  double unit(const PivotVariable& of) const {
-    return of.kind == PivotVariable::Kind::slip ? 1 : problem_.unit(of.row);
-  }
+  double unit(const Variable& of) const { return of.kind == Variable::Kind::slip ? 1 : problem_.unit(of.row); }
 
   const ContactProblem& problem_;
   const std::vector<Choice>& choices_;
   std::vector<double> known_;
-  std::vector<PivotVariable> variables_;
+  std::vector<Variable> variables_;
 };
 
 void ContactProblem::Pivots::add(std::size_t k) {
-  using Kind = PivotVariable::Kind;
+  using Kind = Variable::Kind;
   const Place& p = problem_.place[k];
   const std::size_t n = 2 * k, t = n + 1;
   const int slip = choices_[k].slip;
@@ -86,8 +80,8 @@ void ContactProblem::Pivots::add(std::size_t k) {
 }
 
 // Units: of a force 1 / sqrt(D), of w its inverse, so that forces have rows of size one; slips are rates already.
-double ContactProblem::Pivots::entry(const PivotVariable& row, const PivotVariable& column) const {
-  using Kind = PivotVariable::Kind;
+double ContactProblem::Pivots::entry(const Variable& row, const Variable& column) const {
+  using Kind = Variable::Kind;
   const bool same = row.place == column.place;
   const Place& p = problem_.place[row.place];
   if (row.kind == Kind::slip) {
@@ -102,8 +96,8 @@ double ContactProblem::Pivots::entry(const PivotVariable& row, const PivotVariab
   return row.sign * w * unit(row) * unit(column);
 }
 
-double ContactProblem::Pivots::constant(const PivotVariable& row) const {
-  if (row.kind == PivotVariable::Kind::slip) {
+double ContactProblem::Pivots::constant(const Variable& row) const {
+  if (row.kind == Variable::Kind::slip) {
     const Place& p = problem_.place[row.place];
     return p.has_normal ? 0 : 2 * limit(row.place) / problem_.unit(row.row);
   }
@@ -122,8 +116,8 @@ bool ContactProblem::Pivots::solve(std::vector<double>& x) const {
   const bool found = lemke(M, q, z);
   x = known_;
   for (std::size_t c = 0; c < size; ++c) {
-    const PivotVariable& of = variables_[c];
-    if (of.kind == PivotVariable::Kind::slip) continue;
+    const Variable& of = variables_[c];
+    if (of.kind == Variable::Kind::slip) continue;
     x[2 * of.place] += of.across * unit(of) * z[c];
     x[2 * of.place + 1] += of.along * unit(of) * z[c];
   }

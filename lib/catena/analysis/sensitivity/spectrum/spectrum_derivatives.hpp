@@ -59,7 +59,7 @@ class SpectrumDerivatives final : public StateDerivatives {
   /// divergence: circulatory_derivatives.cpp.
   std::optional<std::vector<double>> gradient_without_energy(double omega2, std::span<const double> shape,
                                                              Metric metric = Metric::masses);
-  /// The same of one complex omega2 of a pair that flutters, omega2 - i imaginary: flutter_derivatives.cpp.
+  /// The same of one complex omega2 of a pair that flutters, omega2 + i imaginary: flutter_derivatives.cpp.
   std::optional<std::vector<std::complex<double>>> gradient_of_pair(std::complex<double> omega2,
                                                                     std::span<const double> shape);
   /// h_p by every parameter, the last one the load, where two omega2 meet in this one: circulatory_derivatives.cpp.
