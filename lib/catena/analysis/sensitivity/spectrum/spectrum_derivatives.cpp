@@ -10,6 +10,9 @@
 namespace catena {
 namespace {
 
+// Forces that cancel out leave rounding: what this part of the length scale, or of 1 rad, makes of the stiffness.
+constexpr double rounding_of_places = 1e-13;
+
 /// Fills the metric (1, 1, radius^2) and Phi_q, and factors.
 bool factor_metric(Evaluator& evaluator, SaddleSystem& system, std::span<double> jacobian) {
   const Plan& plan = evaluator.plan();
@@ -57,11 +60,21 @@ bool SpectrumDerivatives::is_in_balance() {
   evaluator().applied_forces(rest_, loads);
   std::vector<double> held(at(plan().columns), 0.0);
   multiply_transposed_add(plan().jacobian, jacobian(), lambda_, held);
+  std::vector<double> stiffness(rest_.size(), 0.0);
+  evaluator().visit_stiffness(rest_, [&](int i, int j, const ElementMatrix& m) {
+    for (std::size_t r = 0; r < 6; ++r) {
+      const int body = r < 3 ? i : j;
+      if (body >= 0 && body < plan().moving) stiffness[at(3 * body) + r % 3] += std::abs(m[7 * r]);
+    }
+  });
   double size = 0, left = 0;
   for (int c = 0; c < plan().columns; ++c) {
-    const double load = loads[at(plan().coordinate[at(c)])];
+    const int coordinate = plan().coordinate[at(c)];
+    const double load = loads[at(coordinate)], rest = std::abs(load - held[at(c)]);
+    const double none = rounding_of_places * stiffness[at(coordinate)] *
+                        (coordinate % 3 == 2 ? 1 : evaluator().length_scale());
     size = std::max(size, std::abs(load));
-    left = std::max(left, std::abs(load - held[at(c)]));
+    if (rest > none) left = std::max(left, rest);
   }
   // Forces are in balance if what is left of them is at most this part: what modes take for balance, see modes.cpp.
   return left <= thresholds::same_value * size;
