@@ -141,7 +141,7 @@ std::shared_ptr<Model> four_followers() {
   return model;
 }
 
-TEST_P(DynamicsCheckpoints, SeveralCamContacts) { check(four_followers(), 1.5, 0.17, GetParam()); }
+TEST_P(DynamicsCheckpoints, SeveralCamContacts) { check(four_followers(), 0.5, 0.11, GetParam()); }
 
 std::string method_name(const ::testing::TestParamInfo<IntegrationMethod>& info) {
   return std::string(to_string(info.param));
