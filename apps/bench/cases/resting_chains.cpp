@@ -18,7 +18,7 @@ using namespace catena;
 
 namespace {
 
-constexpr double span_per_rod = 0.8, mass = 1.5, stiffness = 200;
+constexpr double distance_per_rod = 0.8, mass = 1.5, stiffness = 200;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ const char* name_of(ChainStart start) {
 std::shared_ptr<Model> chain_between_pins(int rods, ChainStart start) {
   auto model = std::make_shared<Model>();
   model->gravity = {0, -9.81};
-  const double slope = std::acos(span_per_rod);
+  const double slope = std::acos(distance_per_rod);
   std::mt19937 generator(1);
   Vec2<double> from{};
   for (int k = 0; k < rods; ++k) {
@@ -41,12 +41,12 @@ std::shared_ptr<Model> chain_between_pins(int rods, ChainStart start) {
     model->add("", Revolute<>{{k == 0 ? 0 : 0.5, 0}, {-0.5, 0}}, k == 0 ? ground : rod - 1, rod);
     from = to;
   }
-  model->add("", Revolute<>{{span_per_rod * rods, 0}, {0.5, 0}}, ground, rods - 1);
+  model->add("", Revolute<>{{distance_per_rod * rods, 0}, {0.5, 0}}, ground, rods - 1);
   return model;
 }
 
 double error_at_rest(std::span<const double> q) {
-  const auto exact = ends_at_rest(static_cast<int>(q.size() / 3), span_per_rod);
+  const auto exact = ends_at_rest(static_cast<int>(q.size() / 3), distance_per_rod);
   long double worst = 0;
   for (std::size_t k = 0; k < exact.size(); ++k) {
     const long double phi = q[3 * k + 2];

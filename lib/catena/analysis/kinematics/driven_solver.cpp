@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "catena/analysis/kinematics/body_motion.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/dependence.hpp"
@@ -26,26 +27,6 @@ constexpr double keep_distance = 1e-4;
 constexpr double keep_rate = 1e-2;
 // A ratio of successive corrections above this asks for new factors.
 constexpr double poor_contraction = 0.1;
-// Of fewer columns, eight bodies, the sizes of vectors are found body by body: Scaling's lanes are for more.
-constexpr std::size_t few_columns = 24;
-
-/// The largest shift and turn of some bodies; not a number where an entry is not finite.
-class BodyMotion {
- public:
-  void add(double x, double y, double phi) {
-    const double dx = std::abs(x), dy = std::abs(y), turn = std::abs(phi), shift = dx > dy ? dx : dy;
-    shift_ = shift > shift_ ? shift : shift_;
-    turn_ = turn > turn_ ? turn : turn_;
-    sum_ += dx + dy + turn;
-  }
-  Scaling::Size size(double length) const {
-    const double shift = shift_ / length, nothing = sum_ - sum_;  // not a number, or zero
-    return {(shift > turn_ ? shift : turn_) + nothing, turn_ + nothing};
-  }
-
- private:
-  double shift_ = 0, turn_ = 0, sum_ = 0;
-};
 
 }  // namespace
 

@@ -65,7 +65,7 @@ void MotionDerivatives::end_block() {
 bool MotionDerivatives::take_block(std::span<const Step> steps) {
   begin_block(steps.front().from, steps.front().begin);
   std::size_t count = tangents_ ? again_->join(steps, RecomputedSteps::From::front, step_) : 0;
-  stages_recomputed_ = true;
+  watched_.recomputed = true;
   by_tangents_ = count > 0 && take_by_tangents();
   if (!by_tangents_) {
     count = 1;
@@ -157,7 +157,7 @@ bool MotionDerivatives::take_watched(const Step& step) {
   tangents_->project_with_factors(place(), rows_.end);
   end_block();
   watched_.place_serves = by_tangents_ = true;
-  stages_recomputed_ = false;
+  watched_.recomputed = false;
   note_block(std::span(&step, 1));
   return true;
 }
@@ -182,8 +182,8 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
   if (inside && !by_tangents_) return false;
   if (inside) {
     if (!interpolant_ready_) {
-      if (!stages_recomputed_ && !again_->recompute(step_)) return false;
-      stages_recomputed_ = true;
+      if (!watched_.recomputed && !again_->recompute(step_)) return false;
+      watched_.recomputed = true;
       if (!again_->prepare_interpolant(step_)) return false;
       tangents_->prepare_interpolant(*again_, h, rows_.begin, rows_.end);
       interpolant_ready_ = true;

@@ -140,8 +140,8 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
     int stages = 0;
     bool begun = false;         // the first one is known, whatever the step's length
     bool place_serves = false;  // place() has what is known where it begins
+    bool recomputed = false;    // again_ has the stages of the last block
   } watched_;
-  bool stages_recomputed_ = false;  // of the last block, in again_
 };
 
 }  // namespace catena
