@@ -230,10 +230,8 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
 Scaling::Size DrivenSolver::subtract_step(std::span<double> q) {
   if (step_.size() < few_columns) {
     BodyMotion motion;
-    for (std::size_t c = 0; c < step_.size(); c += 3) {
-      motion.add(step_[c], step_[c + 1], step_[c + 2]);
-      for (std::size_t k = c; k < c + 3; ++k) q[k] -= step_[k];
-    }
+    for (std::size_t c = 0; c < step_.size(); c += 3) motion.add(step_[c], step_[c + 1], step_[c + 2]);
+    for (std::size_t c = 0; c < step_.size(); ++c) q[c] -= step_[c];
     return motion.size(evaluator_.length_scale());
   }
   return scaling_.scan_columns<1>(step_.size(), [&](std::size_t c) {
