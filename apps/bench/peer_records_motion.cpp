@@ -18,7 +18,7 @@ using namespace catena;
 
 namespace {
 
-constexpr double gravity = 9.81;
+constexpr double field_strength = 9.81;
 constexpr double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11};
 constexpr IntegrationMethod methods[] = {IntegrationMethod::automatic, IntegrationMethod::rk8,
                                          IntegrationMethod::adams};
@@ -35,7 +35,7 @@ double energy(const Model& model, const SystemState& s) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& body = model.bodies[b];
     const double u = s.qd[3 * b], v = s.qd[3 * b + 1], w = s.qd[3 * b + 2];
-    sum += 0.5 * body.mass * (u * u + v * v) + 0.5 * body.inertia * w * w + body.mass * gravity * s.q[3 * b + 1];
+    sum += 0.5 * body.mass * (u * u + v * v) + 0.5 * body.inertia * w * w + body.mass * field_strength * s.q[3 * b + 1];
   }
   return sum;
 }

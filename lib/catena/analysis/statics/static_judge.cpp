@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/run/far_places.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/base/at.hpp"
 

@@ -71,8 +71,8 @@ bool SpectrumDerivatives::is_in_balance() {
   for (int c = 0; c < plan().columns; ++c) {
     const int coordinate = plan().coordinate[at(c)];
     const double load = loads[at(coordinate)], rest = std::abs(load - held[at(c)]);
-    const double none = rounding_of_places * stiffness[at(coordinate)] *
-                        (coordinate % 3 == 2 ? 1 : evaluator().length_scale());
+    const double none =
+        rounding_of_places * stiffness[at(coordinate)] * (coordinate % 3 == 2 ? 1 : evaluator().length_scale());
     size = std::max(size, std::abs(load));
     if (rest > none) left = std::max(left, rest);
   }
