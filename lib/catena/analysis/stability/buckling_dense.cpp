@@ -15,7 +15,6 @@
 #include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
-#include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/stability/buckling.hpp"
 #include "catena/analysis/stability/load_search.hpp"
 #include "catena/base/at.hpp"
@@ -46,17 +45,22 @@ class Buckling::Spectrum {
       weight.push_back(coordinate % 3 == 2 ? arms[at(coordinate / 3)] * arms[at(coordinate / 3)] : 1);
     }
     MotionGroups* const groups = &buckling_.groups_.value();
+    groups->orthonormalise(weight);
     system.fill(lambda, Curvature::exact, 0);
-    const DenseModes dense(system, *groups, weight);
-    if (!dense.ok()) return buckling_.not_stable();
     const StiffnessFloor floor(system, lambda, 0, groups);
+    std::vector<double> reduced;
+    reduce_stiffness(system.matrix(), group_, reduced);
+    const Eigen::Index f = group_.freedoms();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::Map<Eigen::MatrixXd>(reduced.data(), f, f));
+    if (solver.info() != Eigen::Success) return buckling_.not_stable();
     std::vector<std::vector<double>> free;
-    metric_.resize(group_.freedoms());
-    Eigen::Index place = 0;
-    for (Mode& mode : dense.lowest(group_.freedoms(), floor)) {
-      if (mode.omega2 < 0) return buckling_.not_stable();
-      if (mode.omega2 == 0) free.push_back(std::move(mode.shape));
-      metric_[place++] = 1 / std::sqrt(mode.omega2);
+    for (Eigen::Index k = 0; k < f; ++k) {
+      std::vector<double> v = expand(solver.eigenvectors().col(k));
+      if (std::abs(solver.eigenvalues()[k]) <= floor(v)) {
+        free.push_back(std::move(v));
+      } else if (solver.eigenvalues()[k] < 0) {
+        return buckling_.not_stable();
+      }
     }
     if (!free.empty()) {
       return {Status::refused,
@@ -65,7 +69,8 @@ class Buckling::Spectrum {
                           describe_free_motions(static_cast<int>(free.size()), names_of_moving(system, lambda, free))),
               {}};
     }
-    rounding_ = stiffness_rounding * std::pow(metric_[0] / metric_[place - 1], 2);
+    rounding_ = stiffness_rounding * solver.eigenvalues()[f - 1] / solver.eigenvalues()[0];
+    metric_ = solver.eigenvectors() * solver.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal();
     return {};
   }
 
@@ -76,7 +81,7 @@ class Buckling::Spectrum {
     std::vector<double> reduced;
     reduce_stiffness(matrix_, group_, reduced);
     const Eigen::Index f = group_.freedoms();
-    now_ = metric_.asDiagonal() * Eigen::Map<Eigen::MatrixXd>(reduced.data(), f, f) * metric_.asDiagonal();
+    now_ = metric_.transpose() * Eigen::Map<Eigen::MatrixXd>(reduced.data(), f, f) * metric_;
     if (now_.allFinite()) return true;
     report_ = {
         Status::not_converged, fmt::format("the stiffness at the value {:.6g} of the parameter is not finite", p), {}};
@@ -95,7 +100,7 @@ class Buckling::Spectrum {
   std::vector<double> shape(double p, int k) {
     if (!evaluate(p)) return std::vector<double>(at(buckling_.plan_->columns), 0.0);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(now_);
-    return expand(metric_.cwiseProduct(solver.eigenvectors().col(k)));
+    return expand(metric_ * solver.eigenvectors().col(k));
   }
 
  private:
@@ -108,8 +113,7 @@ class Buckling::Spectrum {
   Buckling& buckling_;
   MotionGroup& group_;
   KktMatrix matrix_;
-  Eigen::VectorXd metric_;  // of the modes of the present stiffness, which are the group's basis: k^-1/2
-  Eigen::MatrixXd now_;
+  Eigen::MatrixXd metric_, now_;
   double rounding_ = 0;
   Report report_;
 };
