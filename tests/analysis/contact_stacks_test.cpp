@@ -119,7 +119,7 @@ void expect_to_keep_laws(const ContactProblem& p, double rounding) {
 TEST(ContactStacks, RandomPushesKeepTheLaws) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> number(0, 1);
-  for (int n = 0; n < size_of_test(150, 30); ++n) {
+  for (int n = 0; n < testing::size_of_test(150, 30); ++n) {
     SCOPED_TRACE(n);
     int boxes = 4 + n % 17;
     const std::vector<Foot> feet = n % 3 == 2 ? wall(4, 4 + n % 4, boxes) : stack(boxes);

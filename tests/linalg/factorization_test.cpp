@@ -289,7 +289,7 @@ TEST(Factorization, AcceptsTheEmptyAndTheSmallestMatrix) {
     EXPECT_TRUE(factorization.factorize({}, counters).ok());
     EXPECT_EQ(factorization.rcond(), 1);
     EXPECT_EQ(factorization.blocks(), 0);
-    factorization.solve({}, counters);
+    factorization.solve(std::span<double>{}, counters);
     EXPECT_TRUE(factorization.solve_checked({}, {}, counters).ok());
     EXPECT_EQ(counters, Counters{});
 
