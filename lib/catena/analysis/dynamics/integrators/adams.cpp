@@ -98,7 +98,7 @@ void Adams::predict(double h) {
 }
 
 // Weight of a change of the derivative by one at coordinate c.
-double Adams::weight(std::size_t c, double h) const {
+inline double Adams::weight(std::size_t c, double h) const {
   const double v_unit = scale_.velocity_unit(c, h, y_[motion_.coordinates() + c]);
   return h * std::max(v_unit > 0 ? 1 / v_unit : 0, h / scale_.position_unit(c, h));
 }
