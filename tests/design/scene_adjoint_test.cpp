@@ -261,5 +261,45 @@ TEST(AdjointInScenes, AutoGivesColumns) {
   EXPECT_TRUE(sensitivity(chain, inner, "adjoint", "").column("d(b0.x)/d(k)").empty());
 }
 
+// A rise of order 3 over T = t1 - t0: the load of its driver is m (6 - 12 tau) / T^2, whose square has the integral
+// 12 m^2 / T^3; it jumps where the rise ends, which t1 moves.
+TEST(AdjointInScenes, LoadsThatJumpAtAnInstantThatMoves) {
+  for (const std::string mode : {"adjoint", "forward", "auto"}) {
+    SCOPED_TRACE(mode);
+    const TextRun run = run_text(R"({"catena": 1, "parameters": {"t1": 2.2, "m": 2},
+      "bodies": {"b": {"mass": "m", "inertia": 1}},
+      "constraints": [{"type": "translational", "i": "ground", "j": "b", "axis_i": [1, 0], "axis_j": [1, 0]}],
+      "drivers": [{"type": "absolute_x", "name": "d", "i": "b",
+                   "value": {"step": {"t0": 0.3, "t1": "t1", "from": 0, "to": 1, "order": 3}}}],
+      "analyses": [{"type": "sensitivity", "parameters": ["t1", "m"], "mode": ")" +
+                                 mode + R"(", "of": {"type": "inverse_dynamics", "until": 3.1, "every": 0.1,
+      "outputs": [], "measures": {"I": {"integral": "d.load"}, "J": {"integral": "=d.load^2"}}}}]})");
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    const MeasureResult &push = run.analysis().measures[0], &square = run.analysis().measures[1];
+    EXPECT_NEAR(push.gradient[0], 0, 1e-10);
+    EXPECT_NEAR(push.gradient[1], 0, 1e-10);
+    EXPECT_NEAR(square.gradient[0], -36 * 4 / std::pow(1.9, 4), 1e-9);
+    EXPECT_NEAR(square.gradient[1], 24 * 2 / std::pow(1.9, 3), 1e-9);
+  }
+}
+
+// A ball that the first impact stops in its slide, x = u sqrt(2 h / g), and an event that only looks on.
+TEST(AdjointInScenes, EventsBesideFriction) {
+  for (const std::string mode : {"adjoint", "forward"}) {
+    SCOPED_TRACE(mode);
+    const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "parameters": {"h": 0.3},
+      "bodies": {"b": {"particle": true, "mass": 1, "position": [0, "h"], "velocity": [0.2, 0]}},
+      "forces": [{"type": "contact", "name": "C", "i": "ground", "j": "b", "restitution": 0.5, "mu": 0.1,
+                  "curve": {"line": {"point": [0, 0], "axis": [1, 0]}}}],
+      "analyses": [{"type": "sensitivity", "parameters": ["h"], "mode": ")" +
+                                 mode + R"(", "of": {"type": "dynamics", "until": 0.5, "tolerance": 1e-11,
+      "outputs": [], "measures": {"end": {"final": "b.x"}},
+      "events": [{"name": "e", "when": "b.vy", "value": -1}]}}]})");
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    ASSERT_EQ(run.analysis().measures[0].gradient.size(), 1u);
+    EXPECT_NEAR(run.analysis().measures[0].gradient[0], 0.1 * std::sqrt(2 / (9.81 * 0.3)), 1e-8);
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

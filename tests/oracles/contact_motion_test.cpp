@@ -390,5 +390,34 @@ TEST(ContactMotion, StopsLetGo) {
   }
 }
 
+const std::string wave = R"("curve": {"spline": {"points": [[-1, 0.2], [-0.3, 0.1], [0.3, -0.05], [0.8, 0.1], [2, 0.2]],
+  "end": "natural"}})";
+
+// Friction on a spline, whose third derivative jumps at its knots: what is shown of it moves the particle.
+TEST(ContactMotion, FrictionPassesTheKnotsOfASpline) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"b": {"particle": true, "mass": 1.5,
+    "position": [-0.3, 0.1], "velocity": [1.4389073467301179, -0.42372827086010195]}},
+    "forces": [{"type": "contact", "name": "f", "i": "ground", "j": "b", "mu": 0.1, )" +
+                               wave + R"(}], "outputs": ["b", "f.fx", "f.fy", "f.slip"], )" +
+                               dynamics({0.1, 0.2, 0.3, 0.35, 0.4, 0.5}));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(1.5 * run.column("b.ax")[k], run.column("f.fx")[k], 1e-10) << k;
+    EXPECT_NEAR(1.5 * (run.column("b.ay")[k] + g), run.column("f.fy")[k], 1e-10) << k;
+    EXPECT_NEAR(run.column("f.slip")[k], std::hypot(run.column("b.vx")[k], run.column("b.vy")[k]), 1e-10) << k;
+  }
+}
+
+// Steps of order 5 end with the state that their last stage was evaluated at: nothing is stiff there.
+TEST(ContactMotion, DigitsAreClaimedOnASplineByOrderFive) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"b": {"particle": true, "mass": 1,
+    "position": [-0.3, 0.1]}}, "constraints": [{"type": "point_on_curve", "i": "ground", "j": "b", )" +
+                               wave + R"(}], "outputs": ["b.x"],
+    "analyses": [{"type": "dynamics", "method": "rk5", "until": 1, "every": 0.5}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  ASSERT_FALSE(run.analysis().digits.empty());
+  for (const double digits : run.analysis().digits) EXPECT_GT(digits, 4);
+}
+
 }  // namespace
 }  // namespace catena::testing

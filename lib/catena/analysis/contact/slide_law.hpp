@@ -11,8 +11,10 @@
 // section 3.4; rolling without slip.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "catena/base/design_scalar.hpp"
 #include "catena/elements/curve_search.hpp"
@@ -24,7 +26,11 @@ class SlideOnCurve {
  public:
   /// `arm`: R b.
   SlideOnCurve(BodyCurve<S> curve, const Vec2<S>& point, const S& arm, double start)
-      : curve_(std::move(curve)), point_(point), arm_(arm), start_(start), foot_(start) {}
+      : curve_(std::move(curve)), point_(point), arm_(arm), foot_(start) {
+    closed_ = !curve_.is_line() && !curve_.ends() && !curve_.holds();
+    if (!curve_.is_line()) lay_pieces();
+    start_ = travel(S(start));
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>& j) const {
@@ -42,7 +48,7 @@ class SlideOnCurve {
       }
     }
     const auto [length, turn] = travel(s);
-    return length + T(arm_) * (j.phi - i.phi - turn);
+    return length - T(start_[0]) + T(arm_) * (j.phi - i.phi - turn + T(start_[1]));
   }
 
  private:
@@ -50,44 +56,62 @@ class SlideOnCurve {
     const double size = squared_norm(c.d1);
     return {dot(c.p - x, c.d1), size + dot(c.p - x, c.d2), size};
   }
+  /// Pieces end at the knots of the curve, where its third derivative jumps, and between them: every second of its
+  /// samples is such a place. The rule is exact on circles, and to rounding on a quarter of a piece of a spline.
+  void lay_pieces() {
+    const std::vector<double> samples = curve_.samples();
+    for (std::size_t k = 0; k < samples.size(); k += 2) ends_.push_back(samples[k]);
+    until_.push_back({S(0.0), S(0.0)});
+    for (std::size_t k = 0; k + 1 < ends_.size(); ++k) {
+      const std::array<S, 2> way = gauss(S(ends_[k]), S(ends_[k + 1]));
+      until_.push_back({until_.back()[0] + way[0], until_.back()[1] + way[1]});
+    }
+  }
   /// Moves foot_ to the foot of x, on a closed curve by less than half a period.
   void follow(const Vec2<double>& x) const {
     double s = foot_;
     if (!follow_minimum(
             curve_, [&](const CurvePoint<double>& c) { return descent(c, x); }, s))
       s = curve_.nearest(x);
-    const bool closed = !curve_.is_line() && !curve_.ends() && !curve_.holds();
-    foot_ = closed ? foot_ + std::remainder(s - foot_, curve_.range()) : s;
+    foot_ = closed_ ? foot_ + std::remainder(s - foot_, curve_.range()) : s;
   }
-  /// Length and turn of the curve from the start to s, by Gauss's rule of five points on pieces of a sixteenth of the
-  /// range: exact for circles, to rounding for the pieces of a spline.
+  /// Length and turn of the curve from the start of its range to s, of which the foot is the value.
   template <class T>
   std::array<T, 2> travel(const T& s) const {
+    if (curve_.is_line()) return {norm(curve_.evaluate(s).d1) * s, T(0.0)};
+    const double turns = closed_ ? std::floor((foot_ - ends_.front()) / curve_.range()) : 0;
+    const double there = foot_ - turns * curve_.range();
+    const auto next = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, there);
+    const auto piece = static_cast<std::size_t>(next - ends_.begin()) - 1;
+    std::array<T, 2> way = gauss(T(ends_[piece]), s - T(turns * curve_.range()));
+    for (std::size_t k = 0; k < 2; ++k) way[k] = way[k] + T(until_[piece][k] + S(turns) * until_.back()[k]);
+    return way;
+  }
+  /// The same between two places of a piece, by Gauss's rule of five points.
+  template <class T>
+  std::array<T, 2> gauss(const T& from, const T& to) const {
     constexpr std::array<double, 5> place{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
                                           0.9061798459386640};
     constexpr std::array<double, 5> weight{0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
                                            0.4786286704993665, 0.2369268850561891};
-    if (curve_.is_line()) return {norm(curve_.evaluate(s).d1) * (s - T(start_)), T(0.0)};
-    const double way = std::abs(foot_ - start_);
-    const int pieces = 1 + static_cast<int>(16 * way / curve_.range());
-    const T h = (s - T(start_)) / T(2.0 * pieces);
-    T length(0.0), turn(0.0);
-    for (int n = 0; n < pieces; ++n) {
-      const T middle = T(start_) + T(2.0 * n + 1) * h;
-      for (std::size_t k = 0; k < place.size(); ++k) {
-        const CurvePoint<T> c = curve_.evaluate(middle + T(place[k]) * h);
-        length = length + T(weight[k]) * norm(c.d1) * h;
-        turn = turn + T(weight[k]) * cross(c.d1, c.d2) / squared_norm(c.d1) * h;
-      }
+    const T h = (to - from) * T(0.5), middle = (to + from) * T(0.5);
+    std::array<T, 2> way{T(0.0), T(0.0)};
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      const CurvePoint<T> c = curve_.evaluate(middle + T(place[k]) * h);
+      way[0] = way[0] + T(weight[k]) * norm(c.d1) * h;
+      way[1] = way[1] + T(weight[k]) * cross(c.d1, c.d2) / squared_norm(c.d1) * h;
     }
-    return {length, turn};
+    return way;
   }
 
   BodyCurve<S> curve_;
   Vec2<S> point_;
   S arm_;
-  double start_;
-  mutable double foot_;  // found last: where the search for the next one begins
+  bool closed_ = false;
+  std::vector<double> ends_;             // of pieces of the curve
+  std::vector<std::array<S, 2>> until_;  // length and turn of the curve up to each of them
+  std::array<S, 2> start_{};             // and up to the place where w is zero
+  mutable double foot_;                  // found last: where the search for the next one begins
 };
 
 }  // namespace catena

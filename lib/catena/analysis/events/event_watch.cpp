@@ -34,8 +34,10 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
 }
 
 double EventWatch::tiny(std::size_t k) const {
-  // A distance from the value below this part of the column's size, or below this number, counts as zero.
-  return std::max(thresholds::sum_rounding, thresholds::carried_rounding * std::max(largest_[k], std::abs(target(k))));
+  // A distance from the value below this part of the column's size counts as zero; where the value is zero, below this
+  // number as well: a column that is nothing but rounding passes it all the time.
+  const double size = thresholds::carried_rounding * std::max(largest_[k], std::abs(target(k)));
+  return target(k) == 0 ? std::max(thresholds::sum_rounding, size) : size;
 }
 
 int EventWatch::side(std::size_t k, double g) const {

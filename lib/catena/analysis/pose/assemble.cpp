@@ -33,6 +33,11 @@ struct Start {
 constexpr Start starts[] = {{false, 1e-3}, {false, 0.03}, {false, 0.3}, {false, 1.0}, {true, 0.3},
                             {true, 1.0},   {true, 1.0},   {true, 2.0},  {true, 2.0},  {true, 3.0}};
 constexpr std::size_t most_starts = 24;
+// Beside a place where branches cross or fold, Newton's steps halve the distance to it, so that residuals fall to a
+// quarter each, and end a square root of the tolerance away from it, where all equations look independent. Searches
+// that end regularly gain digits at every step; a few such quarters in a row, between these ratios, are none of theirs.
+constexpr double slow_least = 0.1, slow_most = 0.6;
+constexpr int most_slow_steps = 4;
 // No further start is tried after so many iterations times equations: a factorization costs a microsecond a row.
 constexpr double most_work = 4e6;
 
@@ -86,8 +91,11 @@ double Assembler::extent(std::span<const double> q) const { return scaling_.coor
 bool Assembler::restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome) {
   double now = merit(q);
   double damping = 0;
+  int slow_steps = 0;
   for (int k = 0; k < most_iterations; ++k) {
-    const double residual = scaling_.row_norm(phi_);
+    const double residual = scaling_.row_norm(phi_), ratio = residual / outcome.residual;
+    slow_steps = k > 0 && ratio > slow_least && ratio < slow_most ? slow_steps + 1 : 0;
+    ends_beside_crossing_ = slow_steps >= most_slow_steps;
     outcome.residual = residual;
     // Coordinates of a body that has moved by many length scales are rounded.
     if (!(residual > std::max(tolerance, attainable_digits * extent(q)))) return std::isfinite(residual);
@@ -139,20 +147,26 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
 // within it and end where the misfit is least there, a saddle. So the search is repeated from near it, every coordinate
 // displaced by a different amount, the same amounts every time.
 bool Assembler::restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance,
-                                    AssemblyOutcome& outcome) {
+                                    bool far_too, AssemblyOutcome& outcome) {
   const std::vector<double> saddle(q.begin(), q.end());
   std::mt19937_64 random(1);
+  std::vector<double> beside_crossing;
   for (std::size_t k = 0; k < most_starts; ++k) {
     const Start& start = starts[std::min(k, std::size(starts) - 1)];
+    if (start.from_estimate && !far_too) break;
     std::copy_n(start.from_estimate ? estimate.begin() : std::span<const double>(saddle).begin(), q.size(), q.begin());
     for (const int c : plan_.coordinate) {
       const double number = 2 * std::ldexp(static_cast<double>(random() >> 11), -53) - 1;
       q[at(c)] += start.displacement * number * reach_[at(c)];
     }
-    if (restore(q, tolerance, max_iterations, outcome)) return true;
-    if (static_cast<double>(outcome.iterations) * plan_.rows > most_work) return false;
+    if (restore(q, tolerance, max_iterations, outcome)) {
+      if (!ends_beside_crossing_) return true;
+      if (beside_crossing.empty()) beside_crossing.assign(q.begin(), q.end());
+    }
+    if (static_cast<double>(outcome.iterations) * plan_.rows > most_work) break;
   }
-  return false;
+  std::copy(beside_crossing.begin(), beside_crossing.end(), q.begin());
+  return !beside_crossing.empty();
 }
 
 int Assembler::element_out_of_range(std::span<const double> q) {
@@ -179,12 +193,16 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
     // If all repetitions fail, the conflicting constraints are determined from the end of the first search.
     std::vector<double> beside(q.begin(), q.end());
     const double residual = outcome.residual;
-    met = restore_from_beside(beside, estimate, tolerance, outcome);
+    met = restore_from_beside(beside, estimate, tolerance, true, outcome);
     if (met) {
       std::copy(beside.begin(), beside.end(), q.begin());
     } else {
       outcome.residual = residual;
     }
+  } else if (ends_beside_crossing_) {
+    std::vector<double> beside(q.begin(), q.end());
+    if (restore_from_beside(beside, estimate, tolerance, false, outcome))
+      std::copy(beside.begin(), beside.end(), q.begin());
   }
   if (!met) {
     if (const int element = element_out_of_range(estimate); element >= 0) {

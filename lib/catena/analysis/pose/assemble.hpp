@@ -45,7 +45,7 @@ class Assembler {
   static constexpr double largest_turn_of_a_step = 0.5;
 
   bool restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome);
-  bool restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance,
+  bool restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance, bool far_too,
                            AssemblyOutcome& outcome);
   void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
                          AssemblyOutcome& outcome);
@@ -71,6 +71,7 @@ class Assembler {
   std::vector<double> reach_;               // the same: what a displacement of 1 is, m or rad
   std::vector<CurvePlace> curve_places_;    // of contacts, where a trial begins
   std::vector<double> values_, phi_, lambda_, step_, trial_;
+  bool ends_beside_crossing_ = false;  // restore() came slowly to a place where branches cross or fold
 };
 
 }  // namespace catena

@@ -76,7 +76,7 @@ PhasedDesign phased_design(const DesignModels& designs, const std::vector<double
       if (static_cast<EventAction>(request.action) == EventAction::engage) released.push_back(element);
     }
     const std::string name[] = {request.column};
-    DesignEvent event{ColumnSet::resolve(*model, plan, name, untimed), request.value, {}, {}};
+    DesignEvent event{ColumnSet::resolve(*design.contacts.model, plan, name, untimed), request.value, {}, {}};
     for (std::size_t p = 0; p < moving.size(); ++p) {
       double rate = 0;
       for (const SceneModels::MovingNumber& one : moving[p])
