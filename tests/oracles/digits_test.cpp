@@ -85,7 +85,7 @@ TEST(ClaimedDigits, HoldOfMethodsThatRunTwice) {
     const auto add = [runs = method](unsigned seed, ClaimedDigits& claims) {
       return add_moving_digits(seed, claims, runs);
     };
-    expect_claims(title, size_of_test(20u, 5u), size_of_test(10, 2), add);
+    expect_claims(title, 20, 10, add);
   }
 }
 // Both runs drift off the constraints in the same way: a rate was claimed 27 times better than it was.
