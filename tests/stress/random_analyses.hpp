@@ -79,11 +79,13 @@ class ManyAnalyses {
   /// In other units. The load's components are expressions of P, which has none.
   Json scene(const Transformation& t) const {
     Json scene = TransformedScene(random_.scene, t).scene();
+    bool is_loaded = false;
     for (Json& force : scene["forces"]) {
       if (!force.contains("name")) continue;
       for (Json& part : force["force"]) part = "=P*(" + part.dump() + ")";
-      scene["parameters"] = {{"P", 0}};
+      is_loaded = true;
     }
+    if (is_loaded) scene["parameters"] = {{"P", 0}};
     return scene;
   }
   std::string describe() const {
