@@ -169,7 +169,7 @@ std::array<Long, 2> difference(const PendulumDesign& design, std::size_t p, cons
 
 /// The library's motion of the same pendulum, with the instants of its steps; `watches`: derivatives are carried along
 /// with the stages of the run, else along recomputed ones.
-class SteppedMotion final : public RowObserver, public WatchesStages {
+class SteppedMotion final : public RowObserver {
  public:
   SteppedMotion(const PendulumDesign& design, double until, double tolerance, bool watches)
       : watches_(watches),
@@ -286,7 +286,7 @@ TEST(DiscreteGradients, OfADoublePendulumAreThoseOfItsStepsAndOfItsEquations) {
 }
 
 /// Rows between the ends of steps, by stages that were watched and by recomputed ones: derivatives of places and rates.
-class BothWays final : public RowObserver, public WatchesStages {
+class BothWays final : public RowObserver {
  public:
   BothWays(MotionDerivatives& watching, MotionDerivatives& recomputing)
       : watching_(watching), recomputing_(recomputing) {}

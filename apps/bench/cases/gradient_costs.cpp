@@ -129,7 +129,7 @@ DesignModels designs_of(int rods, std::span<const int> parameters) {
 }
 
 /// Passes steps on to the one that differentiates, if there is one, and keeps where the motion ended.
-class Watcher final : public RowObserver, public WatchesStages {
+class Watcher final : public RowObserver {
  public:
   explicit Watcher(StateDerivatives* derivatives) : derivatives_(derivatives) {}
   StageWatcher* stage_watcher() override { return derivatives_ ? derivatives_->stage_watcher() : nullptr; }

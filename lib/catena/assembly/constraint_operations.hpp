@@ -38,6 +38,8 @@ struct ElementFrames {
     }
     if constexpr (SearchesCurve<E>) contact = pose.contacts + block.first_contact + block.entry[k];
   }
+  /// They refer to this object.
+  Arguments<double> arguments(double c) const { return {i, j, c, ground, contact}; }
 };
 
 template <class E>
@@ -102,12 +104,11 @@ void ConstraintOperations<E>::phi(const Block& block, const Data& data, Pose pos
     const detail::ElementFrames<E> f(block, data, pose, e);
     if constexpr (Joining<E>) {
       double part;
-      data.element[static_cast<std::size_t>(e)].phi(Arguments<double>{f.i, f.j, 0, f.ground, f.contact}, &part);
+      data.element[static_cast<std::size_t>(e)].phi(f.arguments(0), &part);
       out[block.row(e)] += part;
       continue;
     }
-    data.element[static_cast<std::size_t>(e)].phi(
-        Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact}, row);
+    data.element[static_cast<std::size_t>(e)].phi(f.arguments(detail::value_at(data, e).f), row);
     if constexpr (HasSquaredValue<E>) row[0] *= detail::scale_at(data, e);
   }
 }
@@ -123,7 +124,7 @@ void ConstraintOperations<E>::jacobian(const Block& block, const Data& data, Pos
       const E& element = data.element[static_cast<std::size_t>(e)];
       double entries[jacobian_size<E>];
       if constexpr (HasClosedJacobian<E>) {
-        element.jacobian(Arguments<double>{f.i, f.j, c, f.ground, f.contact}, entries);
+        element.jacobian(f.arguments(c), entries);
         for (int k = 0; k < varying; ++k) {
           if constexpr (Joining<E>) {
             values[slot[k]] += entries[k];
@@ -166,10 +167,10 @@ void ConstraintOperations<E>::gamma(const Block& block, const Data& data, Pose p
     const E& element = data.element[static_cast<std::size_t>(e)];
     if constexpr (Joining<E>) {
       double part;
-      element.gamma(Arguments<double>{f.i, f.j, 0, f.ground, f.contact}, u, v, &part);
+      element.gamma(f.arguments(0), u, v, &part);
       out[block.row(e)] += part;
     } else if constexpr (HasClosedGamma<E>) {
-      element.gamma(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact}, u, v, row);
+      element.gamma(f.arguments(detail::value_at(data, e).f), u, v, row);
     } else {
       Taylor<double> rows[E::rows];
       detail::taylor_rows(element, f, u, v, detail::value_at(data, e), rows);
@@ -222,8 +223,7 @@ void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data,
         const detail::ElementFrames<E> f(block, data, pose, e);
         double weights[E::rows];
         for (int r = 0; r < E::rows; ++r) weights[r] = lambda[block.row(e) + r] * detail::scale_at(data, e);
-        data.element[static_cast<std::size_t>(e)].hessian(
-            Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact}, weights, entries);
+        data.element[static_cast<std::size_t>(e)].hessian(f.arguments(detail::value_at(data, e).f), weights, entries);
       } else {
         const ElementMatrix matrix = hessian(block, data, pose, lambda, e);
         for (std::size_t k = 0; k < pattern.size(); ++k) {
@@ -239,8 +239,7 @@ template <class E>
 const char* ConstraintOperations<E>::trouble(const Block& block, const Data& data, Pose pose, int e) {
   if constexpr (HasTrouble<E>) {
     const detail::ElementFrames<E> f(block, data, pose, e);
-    return data.element[static_cast<std::size_t>(e)].trouble(
-        Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact});
+    return data.element[static_cast<std::size_t>(e)].trouble(f.arguments(detail::value_at(data, e).f));
   } else {
     return nullptr;
   }
@@ -252,7 +251,7 @@ std::optional<CurveUse> ConstraintOperations<E>::curve_use(const Block& block, c
     const E& element = data.element[static_cast<std::size_t>(e)];
     if (!element.can_leave_curve()) return {};
     const detail::ElementFrames<E> f(block, data, pose, e);
-    return element.curve_use(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground, f.contact});
+    return element.curve_use(f.arguments(detail::value_at(data, e).f));
   } else {
     return {};
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "catena/assembly/curve_contacts.hpp"
 #include "catena/assembly/length_scale.hpp"
 #include "catena/assembly/same_structure.hpp"
 #include "catena/base/at.hpp"
@@ -127,7 +128,8 @@ Evaluator::Evaluator(std::shared_ptr<const Plan> plan, const Model& model) : pla
   });
   starts_.resize(at(plan_->contacts));
   load_values();
-  go_to_given_curve_places();
+  take_given_contacts(*plan_, model.constraints, starts_);
+  contacts_ = starts_;
 }
 
 void Evaluator::set_model(const Model& model) {
@@ -224,8 +226,8 @@ void Evaluator::set_configuration(std::span<const double> q) {
   for (std::size_t b = 0; b < turns_.size(); ++b) frames_[b].phi += turns_[b] * (2 * std::numbers::pi);
   stretch_ropes();
   if (!starts_.empty()) {
-    find_contacts();
-    starts_ = contacts_;
+    follow(starts_);
+    contacts_ = starts_;
   }
 }
 

@@ -184,6 +184,7 @@ class Evaluator {
   Measured measure_released(int element, std::span<const double> qd) const;
   Pose pose() const { return {frames_.data(), contacts_.data()}; }
   void find_contacts();
+  void follow(std::span<CurvePlace> contacts) const;
   /// Place of an element in its block; without rows -1.
   template <class F>
   void with_element(int element, F&& f) const;

@@ -183,18 +183,19 @@ std::optional<CurveUse> Evaluator::curve_use(int element) const {
   return use;
 }
 
+void Evaluator::follow(std::span<CurvePlace> contacts) const {
+  follow_contacts(
+      *plan_, model_->constraints, origin_, [this](int body) { return frames_[at(body)]; }, contacts);
+}
+
 void Evaluator::find_contacts() {
   contacts_ = starts_;
-  follow_contacts(
-      *plan_, model_->constraints, origin_, [this](int body) { return frames_[at(body)]; }, contacts_);
+  follow(contacts_);
 }
 
 CurvePlace Evaluator::contact(int element) const {
-  CurvePlace contact;
-  const ElementRecord& record = model_->elements[at(element)];
-  with_list(plan_->blocks, record.type,
-            [&](const auto& block) { contact = contact_of(block, contacts_, record.index); });
-  return contact;
+  const int k = plan_->element_contact[at(element)];
+  return k < 0 ? no_contact : contacts_[at(k)];
 }
 
 void Evaluator::go_to_curve_places(std::span<const CurvePlace> places) {
@@ -203,15 +204,11 @@ void Evaluator::go_to_curve_places(std::span<const CurvePlace> places) {
     if (place.element < 0 || at(place.element) >= place_.size())
       throw std::invalid_argument("a place on a curve is that of element number " + std::to_string(place.element) +
                                   ", which the model does not have: it has " + std::to_string(place_.size()));
-    const ElementRecord& record = model_->elements[at(place.element)];
-    if (record.kind == ElementKind::force) continue;
-    with_list(plan_->blocks, record.type, [&](const auto& block) {
-      if constexpr (SearchesCurve<typename std::remove_cvref_t<decltype(block)>::Element>) {
-        CurvePlace& start = starts_[at(block.first_contact + record.index)];
-        moved = moved || start.s_i != place.s_i || start.s_j != place.s_j;
-        start = place;
-      }
-    });
+    const int k = plan_->element_contact[at(place.element)];
+    if (k < 0) continue;
+    CurvePlace& start = starts_[at(k)];
+    moved = moved || start.s_i != place.s_i || start.s_j != place.s_j;
+    start = place;
   }
   if (moved) find_contacts();
 }

@@ -82,7 +82,9 @@ void number_rows(const Model& model, const std::vector<ElementEntry<E, double>>&
                  Plan& plan) {
   block.first_row = plan.rows;
   block.first_contact = plan.contacts;
-  if constexpr (SearchesCurve<E>) plan.contacts += static_cast<int>(list.size());
+  if constexpr (SearchesCurve<E>) {
+    for (const auto& entry : list) plan.element_contact[at(entry.id)] = plan.contacts++;
+  }
   for (int e = 0; e < block.size(); ++e) {
     if (block.body_i[at(e)] < plan.bodies) plan.body_has_row[at(block.body_i[at(e)])] = 1;
     if (block.body_j[at(e)] < plan.bodies) plan.body_has_row[at(block.body_j[at(e)])] = 1;
@@ -164,6 +166,7 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
   const Elimination elimination = eliminate_bodies(model, welds_to_keep(model, options));
   number_coordinates(model, elimination, *plan);
   plan->element_row.assign(model.elements.size(), -1);
+  plan->element_contact.assign(model.elements.size(), -1);
   std::vector<int> released = options.released_elements;
   if (!options.friction) {
     const std::vector<int> dry = model.frictions();

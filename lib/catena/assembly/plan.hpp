@@ -69,7 +69,9 @@ struct Plan {
   std::vector<int> coordinate;  ///< of a column
   bool contiguous = true;       ///< column == coordinate for all columns: no particles
 
-  std::vector<int> element_row;    ///< first row of an element of the model's list, -1: none
+  std::vector<int> element_row;  ///< first row of an element of the model's list, -1: none
+  std::vector<int>
+      element_contact;             ///< of an element of the model's list that searches on curves, its contact; else -1
   std::vector<char> released;      ///< of an element: it does not hold for the time being; empty: none
   std::vector<int> row_element;    ///< element of a row
   std::vector<char> row_is_angle;  ///< residual in radians; else in metres

@@ -57,6 +57,8 @@ class BodyCurve {
 
   /// A straight line without ends.
   bool is_line() const { return std::isinf(shape_->first()); }
+  /// Whether it comes back to its beginning.
+  bool is_closed() const { return shape_->periodic(); }
   /// Whether the curve is a circle; then its centre and radius, in the frame of the body.
   bool is_circle() const { return shape_->periodic() && shape_->knots().empty(); }
   Vec2<S> centre() const {

@@ -41,6 +41,22 @@ bool follow_minimum(const BodyCurve<S>& curve, const F& descent, double& s) {
   return false;
 }
 
+/// Of half the squared distance of the curve from x.
+inline Descent foot_descent(const CurvePoint<double>& c, const Vec2<double>& x) {
+  const double size = squared_norm(c.d1);
+  return {dot(c.p - x, c.d1), size + dot(c.p - x, c.d2), size};
+}
+
+/// Moves s to the foot of x, from where it is or else from the nearest point. False, and s that point, where the
+/// distance has no proper minimum.
+template <class S>
+bool follow_foot(const BodyCurve<S>& curve, const Vec2<double>& x, double& s) {
+  const auto towards = [&](const CurvePoint<double>& c) { return foot_descent(c, x); };
+  if (follow_minimum(curve, towards, s) || follow_minimum(curve, towards, s = curve.nearest(x))) return true;
+  s = curve.nearest(x);
+  return false;
+}
+
 /// The sample at which `value` of the CurvePoint<double> is least.
 template <class S, class F>
 double least_sample(const BodyCurve<S>& curve, const F& value) {

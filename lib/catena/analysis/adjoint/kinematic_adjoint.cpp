@@ -74,9 +74,7 @@ bool KinematicAdjoint::derive(const ColumnSet& columns, const Snapshot& snapshot
   // Which parameters contradict them is seen by carrying derivatives forward alone.
   if (!system_.dependent_rows().empty()) return fail("constraints depend on each other");
   if (columns_ != &columns) {
-    std::vector<DesignMechanism*> mechanisms;
-    for (Group& group : groups()) mechanisms.push_back(&group.mechanism);
-    slopes_ = std::make_unique<ColumnSlopes>(evaluator().model(), columns, mechanisms, parameters());
+    slopes_ = std::make_unique<ColumnSlopes>(evaluator().model(), columns, mechanisms(), parameters());
     columns_ = &columns;
   }
   slopes_->look(snapshot);

@@ -24,10 +24,12 @@ class KinematicAdjoint final : public StateDerivatives {
   KinematicAdjoint(const Evaluator& evaluator, const DesignModels& models, int parameters);
 
   bool goes_back() const override { return true; }
-  int seen_order() const override { return 3; }
   bool find(const Snapshot& snapshot) override;
   bool derive(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out,
               std::span<double> change = {}) override;
+
+ protected:
+  int seen_order() const override { return 3; }
 
  private:
   /// w and the three multipliers of a column; false where the solves fail.

@@ -7,26 +7,13 @@
 
 namespace catena {
 
-std::vector<DesignMechanism*> MotionMeasures::mechanisms() {
-  std::vector<DesignMechanism*> all;
-  for (Group& group : groups()) all.push_back(&group.mechanism);
-  return all;
-}
-
 void MotionMeasures::cover(const MotionStretch& stretch) {
   MotionAdjoint::cover(stretch);
   ended_by_ = {};
   const bool acts = stretch.ends_phase && stretch.ended_by >= 0 && at(stretch.ended_by) < events_.size();
   if (!acts || !why().empty()) return;
   ended_by_.event = stretch.ended_by;
-  const ColumnSet& column = events_[at(stretch.ended_by)].column;
-  ended_by_.by_time = rate_at_end(stretch, [&](double t) -> std::optional<double> {
-    const std::optional<Snapshot> there = stretch.at(t);
-    if (!there) return {};
-    double value = 0;
-    column.evaluate(*there, {&value, 1});
-    return value;
-  });
+  ended_by_.by_time = rate_at_end(stretch, events_[at(stretch.ended_by)].column);
 }
 
 void MotionMeasures::begin(const MotionPhase& phase) {

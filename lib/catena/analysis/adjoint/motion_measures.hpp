@@ -37,7 +37,6 @@ class MotionMeasures final : public MotionAdjoint, public PhaseWitness, public M
     std::vector<double> q, qd, qdd, lambda;
   };
   EventSlopes slopes_of_event(int event, const Snapshot& before) override;
-  std::vector<DesignMechanism*> mechanisms();
 
   std::map<double, State> states_;
   std::vector<DesignEvent> events_;

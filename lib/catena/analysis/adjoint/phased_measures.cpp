@@ -18,14 +18,9 @@ bool is_among(const std::vector<int>& numbers, int number) {
 
 PhasedMeasures::~PhasedMeasures() = default;
 
-// Curves are searched from where the last search ended: those of a model that others see stay as they are.
-Evaluator PhasedMeasures::own_evaluator(PhasedDesign& design) {
-  design.contacts.model = std::make_shared<const Model>(*design.contacts.model);
-  return {Plan::make(*design.contacts.model, design.all_rows), *design.contacts.model};
-}
-
 PhasedMeasures::PhasedMeasures(PhasedDesign design, GivenByModel start)
-    : StateDerivatives(own_evaluator(design), design.models, design.parameters),
+    : StateDerivatives(Evaluator(Plan::make(*design.contacts.model, design.all_rows), *design.contacts.model),
+                       design.models, design.parameters),
       n_(at(plan().coordinates())),
       contacts_(std::move(design.contacts)),
       models_(std::move(design.models)),
@@ -46,17 +41,16 @@ PhasedMeasures::PhasedMeasures(PhasedDesign design, GivenByModel start)
   }
   transpose_ = std::make_unique<PhaseTranspose>(*equations_, *adjoint_, groups().front().mechanism, places_.front());
   stage_.resize(dormand_prince_8().c.size());
+  slope_.assign(stage_.size(), Vector(2 * n_));
 }
 
 bool PhasedMeasures::lose(double t, std::string_view what) {
   return fail(fmt::format("at t = {:.9g} s {}, which the adjoint of the motion does not pass", t, what));
 }
 
-bool PhasedMeasures::find(const Snapshot&) { return false; }
+bool PhasedMeasures::singular_at(double t) { return lose(t, "constraints depend on each other, or friction wedges"); }
 
-std::string PhasedMeasures::name(std::size_t place) const {
-  return contacts_.model->element_name(contacts_.points[place].element);
-}
+bool PhasedMeasures::find(const Snapshot&) { return false; }
 
 bool PhasedMeasures::crosses_at(double t) const {
   return std::any_of(crossings_.begin(), crossings_.end(),
@@ -112,14 +106,7 @@ void PhasedMeasures::find_rate(const MotionStretch& stretch) {
   ended_by_.number = stretch.ended_by;
   const int listed = static_cast<int>(events_.size());
   if (stretch.ended_by < listed) {
-    const ColumnSet& column = events_[at(stretch.ended_by)].column;
-    ended_by_.by_time = rate_at_end(stretch, [&](double t) -> std::optional<double> {
-      const std::optional<Snapshot> there = stretch.at(t);
-      if (!there) return {};
-      double value = 0;
-      column.evaluate(*there, {&value, 1});
-      return value;
-    });
+    ended_by_.by_time = rate_at_end(stretch, events_[at(stretch.ended_by)].column);
     return;
   }
   const MotionPhase& phase = phases_.back();

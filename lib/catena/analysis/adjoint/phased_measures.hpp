@@ -32,7 +32,6 @@ namespace catena {
 
 class PhasedMeasures final : public StateDerivatives, public PhaseWitness, public MeasureAdjoint {
  public:
-  /// Takes a copy of the model, along whose curves it searches.
   PhasedMeasures(PhasedDesign design, GivenByModel start);
   ~PhasedMeasures() override;
 
@@ -96,10 +95,8 @@ class PhasedMeasures final : public StateDerivatives, public PhaseWitness, publi
   };
 
   bool lose(double t, std::string_view what);
-  std::string name(std::size_t place) const;
+  bool singular_at(double t);
   PhaseGroup group_of(std::size_t g) { return {groups()[g].mechanism, places_[g], *reached_[g]}; }
-  static Evaluator own_evaluator(PhasedDesign& design);
-  std::vector<DesignMechanism*> mechanisms();
   ContactSlopes contact_slopes();
   // While the motion runs: phased_measures.cpp.
   bool look_at(const MotionStretch& stretch, double t, Vector& y, std::vector<CurvePlace>* places);
@@ -155,6 +152,7 @@ class PhasedMeasures final : public StateDerivatives, public PhaseWitness, publi
   std::unique_ptr<ColumnSlopes> slopes_;  // of the columns of measures, on the way back
   std::vector<DesignContacts> what_contacts_do_;
   std::vector<Point> stage_;
+  std::vector<Vector> slope_;  // of stages
   std::vector<Way> ways_;
 };
 

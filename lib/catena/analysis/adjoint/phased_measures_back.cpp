@@ -1,6 +1,4 @@
 // PhasedMeasures: the way back over the steps of a phase.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 
@@ -11,12 +9,6 @@
 
 namespace catena {
 namespace {
-
-constexpr std::string_view singular = "constraints depend on each other, or friction wedges";
-
-void add_times(std::vector<double>& y, double weight, const std::vector<double>& k) {
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
-}
 
 bool is_any(std::span<const double> values) {
   return std::any_of(values.begin(), values.end(), [](double x) { return x != 0; });
@@ -49,7 +41,7 @@ bool PhasedMeasures::add_slopes(const Point& point, const StateSlopes& slopes, W
   std::copy(slopes.by_q.begin(), slopes.by_q.end(), more.begin());
   std::copy(slopes.by_qd.begin(), slopes.by_qd.end(), more.begin() + static_cast<std::ptrdiff_t>(n_));
   if (is_any(slopes.by_qdd) || is_any(slopes.by_lambda)) {
-    if (!transpose_->weigh(slopes.by_qdd, slopes.by_lambda)) return lose(point.t, singular);
+    if (!transpose_->weigh(slopes.by_qdd, slopes.by_lambda)) return singular_at(point.t);
     transpose_->add_by_state(point, std::span(more).first(n_), std::span(more).subspan(n_));
     add_weights(point, way);
   }
@@ -72,7 +64,7 @@ bool PhasedMeasures::add_looks(std::span<const Look> looks, const Point& there,
       continue;
     }
     if (of_measure.empty()) {
-      if (!transpose_->evaluate(point)) return lose(point.t, singular);
+      if (!transpose_->evaluate(point)) return singular_at(point.t);
       for (Group& group : groups()) group.mechanism.set_time(point.t);
       slopes_->look({.evaluator = evaluator(),
                      .t = point.t,
@@ -91,7 +83,7 @@ bool PhasedMeasures::add_looks(std::span<const Look> looks, const Point& there,
 bool PhasedMeasures::project_back(const Point& point, Way& way, Vector& y) {
   std::array<Vector, 2> weights;
   if (!transpose_->project_back(point, std::span(y).first(n_), std::span(y).subspan(n_), way.anchor, weights))
-    return lose(point.t, singular);
+    return singular_at(point.t);
   for (std::size_t g = 0; g < groups().size(); ++g)
     add_gradient(g, transpose_->rows_by_parameters(point, weights[0], weights[1], group_of(g)), way);
   return true;
@@ -122,7 +114,6 @@ bool PhasedMeasures::add_inside(const Step& step, std::span<const Look> looks) {
 bool PhasedMeasures::recompute(const Step& step, bool interpolated) {
   const Tableau& table = dormand_prince_8();
   const double h = step.to - step.from;
-  std::vector<Vector> slope(table.c.size(), Vector(2 * n_));
   Vector y(2 * n_);
   for (std::size_t s = 0; s < (interpolated ? table.c.size() : at(table.stages)); ++s) {
     const bool is_end = s == at(table.stages), at_end = table.c[s] == 1 && s <= at(table.stages);
@@ -130,12 +121,12 @@ bool PhasedMeasures::recompute(const Step& step, bool interpolated) {
       y = step.end;
     else
       add_stages(
-          step.begin, h, table.a[s], [&](int k) { return slope[at(k)].data(); }, y);
+          step.begin, h, table.a[s], [&](int k) { return slope_[at(k)].data(); }, y);
     const double t = at_end ? step.to : step.from + table.c[s] * h;
     stage_[s] = point_of(t, at_end ? Side::before : Side::after, y);
-    if (!transpose_->evaluate(stage_[s])) return lose(t, singular);
-    std::copy(stage_[s].qd.begin(), stage_[s].qd.end(), slope[s].begin());
-    std::copy(stage_[s].qdd.begin(), stage_[s].qdd.end(), slope[s].begin() + static_cast<std::ptrdiff_t>(n_));
+    if (!transpose_->evaluate(stage_[s])) return singular_at(t);
+    std::copy(stage_[s].qd.begin(), stage_[s].qd.end(), slope_[s].begin());
+    std::copy(stage_[s].qdd.begin(), stage_[s].qdd.end(), slope_[s].begin() + static_cast<std::ptrdiff_t>(n_));
   }
   return true;
 }
@@ -143,7 +134,7 @@ bool PhasedMeasures::recompute(const Step& step, bool interpolated) {
 bool PhasedMeasures::stage_back(std::size_t s, const Vector& k, Way& way) {
   Vector& back = way.back[s];
   const std::span<const double> k_q = std::span(k).first(n_), k_qd = std::span(k).subspan(n_);
-  if (!transpose_->weigh(k_qd, {})) return lose(stage_[s].t, singular);
+  if (!transpose_->weigh(k_qd, {})) return singular_at(stage_[s].t);
   std::fill(back.begin(), back.end(), 0.0);
   const std::span<double> back_q = std::span(back).first(n_), back_qd = std::span(back).subspan(n_);
   std::copy(k_q.begin(), k_q.end(), back_qd.begin());
@@ -161,21 +152,22 @@ bool PhasedMeasures::stages_back(const Step& step, bool interpolated) {
   static const auto of_step = stage_weights_back(false), of_interpolant = stage_weights_back(true);
   const auto& terms = interpolated ? of_interpolant : of_step;
   const std::size_t stages = interpolated ? table.c.size() : at(table.stages), last = at(table.stages);
-  const Vector nothing(2 * n_, 0.0);
   Vector slope(2 * n_);
   for (std::size_t s = stages; s-- > 0;) {
     if (s + 1 == last) {
       const Point end = point_of(step.to, Side::before, step.end);
-      if (!transpose_->factorize(end)) return lose(step.to, singular);
+      if (!transpose_->factorize(end)) return singular_at(step.to);
       for (Way& way : ways_) {
         if (way.begun && !project_back(end, way, way.y1)) return false;
       }
     }
-    if (!transpose_->restore(stage_[s])) return lose(stage_[s].t, singular);
+    if (!transpose_->restore(stage_[s])) return singular_at(stage_[s].t);
     for (Way& way : ways_) {
       if (!way.begun) continue;
       const auto vector_of = [&](int j) { return (j == step_end ? way.y1 : way.back[at(j)]).data(); };
-      add_stages(interpolated ? way.slopes[s] : nothing, h, terms[s], vector_of, slope);
+      const std::span<const double> begin =
+          interpolated ? std::span<const double>(way.slopes[s]) : std::span<const double>();
+      add_stages(begin, h, terms[s], vector_of, slope);
       if (!stage_back(s, slope, way)) return false;
       if (s == last) add_times(way.y1, 1, way.back[s]);
     }
@@ -221,10 +213,12 @@ bool PhasedMeasures::go_back_to_end(std::size_t k, std::span<const Look>& looks)
   if (moves && std::any_of(looks.begin(), looks.end(), looks_there))
     return lose(last.to, "a measure looks at an instant at which the motion goes on in another way");
   const bool beyond = crossing && !ends;
-  hold(phases_[beyond ? steps_[k].phase : last.phase]);
-  const Point there = point_of(last.to, Side::after, beyond ? steps_[k].begin : last.end);
-  while (!looks.empty() && looks.back().t >= last.to) {
-    if (!add_looks(take_last(looks), there, [this](std::size_t m) -> Vector& { return ways_[m].y1; })) return false;
+  if (!looks.empty() && looks.back().t >= last.to) {
+    hold(phases_[beyond ? steps_[k].phase : last.phase]);
+    const Point there = point_of(last.to, Side::after, beyond ? steps_[k].begin : last.end);
+    while (!looks.empty() && looks.back().t >= last.to) {
+      if (!add_looks(take_last(looks), there, [this](std::size_t m) -> Vector& { return ways_[m].y1; })) return false;
+    }
   }
   return !beyond || cross_back(*crossing, last);
 }

@@ -1,27 +1,13 @@
 // PhasedMeasures: back across instants at which the motion goes on in another way.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "catena/analysis/adjoint/phased_measures.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Accelerations that differ by less than this part of their size are the same on both sides of an instant.
-constexpr double no_bend = 1e-9;
-constexpr std::string_view singular_there = "constraints depend on each other, or friction wedges";
-
-}  // namespace
-
-std::vector<DesignMechanism*> PhasedMeasures::mechanisms() {
-  std::vector<DesignMechanism*> all;
-  for (Group& group : groups()) all.push_back(&group.mechanism);
-  return all;
-}
 
 /// What contacts do, as columns read it.
 ContactSlopes PhasedMeasures::contact_slopes() {
@@ -76,18 +62,18 @@ void PhasedMeasures::find_blows(const Crossing& crossing, Passage& passage) cons
 bool PhasedMeasures::find_passage(const Crossing& crossing, const Step& last, Passage& passage) {
   passage.before = point_of(last.to, Side::before, last.end);
   hold(phases_[last.phase]);
-  if (!transpose_->evaluate(passage.before)) return lose(last.to, singular_there);
+  if (!transpose_->evaluate(passage.before)) return singular_at(last.to);
   Point there{last.to, Side::after, passage.before.q, passage.before.qd};
   find_blows(crossing, passage);
   for (Passage::Blow& blow : passage.blows) {
     equations_->hold(blow.released, blow.states);
     blow.step.before = there;
-    if (!transpose_->jump(blow.step)) return lose(last.to, singular_there);
+    if (!transpose_->jump(blow.step)) return singular_at(last.to);
     there.qd = blow.step.after.qd;
   }
   hold(crossing.phase);
   passage.after = std::move(there);
-  return transpose_->evaluate(passage.after) || lose(last.to, singular_there);
+  return transpose_->evaluate(passage.after) || singular_at(last.to);
 }
 
 // An instant that is not known matters only where the motion jumps or bends.
@@ -99,7 +85,8 @@ bool PhasedMeasures::bends(const Passage& passage) const {
     change = std::max(change, std::abs(after - before));
     size = std::max({size, std::abs(before), std::abs(after)});
   }
-  return change > no_bend * size;
+  // Accelerations that differ by less than this part of their size are the same on both sides of an instant.
+  return change > thresholds::negligible * size;
 }
 
 // By what determines the instant.
@@ -114,7 +101,7 @@ bool PhasedMeasures::end_back(const Crossing& crossing, const Step& last, Passag
   }
   const double weight = -way.instant / *crossing.by_time;
   hold(phases_[last.phase]);
-  if (!transpose_->restore(before)) return lose(last.to, singular_there);
+  if (!transpose_->restore(before)) return singular_at(last.to);
   if (!crossing.place) {
     const DesignEvent& event = events_[at(crossing.event)];
     ColumnSlopes slopes(evaluator().model(), event.column, mechanisms(), parameters(), contact_slopes());
@@ -157,7 +144,7 @@ bool PhasedMeasures::cross_back(const Crossing& crossing, const Step& last) {
     for (Way& way : ways_) {
       const std::span<double> q = std::span(way.y1).first(n_), qd = std::span(way.y1).subspan(n_);
       if (!way.begun) continue;
-      if (!transpose_->jump_back(blow->step, q, qd, way.instant)) return lose(last.to, singular_there);
+      if (!transpose_->jump_back(blow->step, q, qd, way.instant)) return singular_at(last.to);
       for (std::size_t g = 0; g < groups().size(); ++g)
         add_gradient(g, transpose_->jump_by_parameters(blow->step, group_of(g), g), way);
     }

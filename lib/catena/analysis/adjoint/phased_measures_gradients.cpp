@@ -1,4 +1,6 @@
 // PhasedMeasures: the way back as a whole, and its end at the start of the motion.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +14,7 @@ bool PhasedMeasures::add_start() {
   const Step& first = steps_.front();
   hold(phases_.front());
   const Point point = point_of(first.from, Side::after, first.begin);
-  if (!transpose_->factorize(point)) return lose(first.from, "constraints depend on each other");
+  if (!transpose_->factorize(point)) return singular_at(first.from);
   for (Way& way : ways_) release_anchors(point, way);
   Evaluator open(open_plan_, *contacts_.model);
   open.go_to_curve_places(first.places);
@@ -29,6 +31,7 @@ bool PhasedMeasures::add_start() {
     lift(point.qd, qd);
     if (!start.find(mechanism, group.count, q, qd))
       return fail("the start of the motion has no derivative: " + start.why());
+    group.mechanism.go_to_curve_places(first.places);
     group.mechanism.set_time(first.from);
     group.mechanism.set_state(q, qd);
     group.mechanism.rows(group.rows);
@@ -39,8 +42,12 @@ bool PhasedMeasures::add_start() {
       const std::size_t number = g * at(parameters_at_once) + p;
       const double size = number < sizes_.size() && sizes_[number] != 0 ? std::abs(sizes_[number]) : 1;
       const double none = rounding_of_derivatives * std::max(evaluator().length_scale(), 1.0) / size;
-      if (equations_->row_not_met(group.rows, anchor, q, qd, p, none, always) >= 0)
-        return lose(first.from, "a contact is closed that a parameter opens");
+      const int row = equations_->row_not_met(group.rows, anchor, q, qd, p, none, always);
+      if (row >= 0) {
+        const int element = plan().row_element[at(row)];
+        return lose(first.from,
+                    fmt::format("\"{}\" holds, but a parameter opens it", contacts_.model->element_name(element)));
+      }
       for (Way& way : ways_) {
         for (std::size_t c = 0; c < n_; ++c)
           way.gradient[number] += way.y1[c] * q[c].d[p] + way.y1[n_ + c] * qd[c].d[p];

@@ -25,9 +25,7 @@ bool StaticAdjoint::derive(const ColumnSet& columns, const Snapshot& snapshot, s
   if (!find(snapshot) || !factorize(snapshot, true)) return false;
   // Which parameters contradict them is seen by carrying derivatives forward alone.
   if (!system().dependent_rows().empty()) return fail("constraints depend on each other");
-  std::vector<DesignMechanism*> mechanisms;
-  for (Group& group : groups()) mechanisms.push_back(&group.mechanism);
-  ColumnSlopes slopes(evaluator().model(), columns, mechanisms, parameters());
+  ColumnSlopes slopes(evaluator().model(), columns, mechanisms(), parameters());
   slopes.look(snapshot);
   mechanism_.set_motion(evaluator(), {}, {});
   const std::span<double> w = loads_scratch(), mu = rows_scratch();

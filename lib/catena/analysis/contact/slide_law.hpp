@@ -5,10 +5,10 @@
 //
 // R: radius of the disc around P_j, m; b = 1 where it is on the left of the curve, else -1; kappa: curvature. At
 // contact x = p + R b n, so that w' is the velocity of the disc's material against the curve's along the tangent p': a
-// wheel that rolls has w' = 0. The foot is that of point_on_curve.hpp; two Newton steps in the scalar of the
-// derivatives carry its first and second derivatives exactly. On a closed curve s goes on beyond a period. Singular as
-// point_on_curve.hpp. S: the scalar of curve, point and R; that of the frames holds it. Units: m, rad. Source: Haug,
-// section 3.4; rolling without slip.
+// wheel that rolls has w' = 0. The foot is that of point_on_curve.hpp; Newton steps in the scalar of the
+// derivatives carry its derivatives exactly, as many as there are orders. On a closed curve s goes on beyond a period.
+// Singular as point_on_curve.hpp. S: the scalar of curve, point and R; that of the frames holds it. Units: m, rad.
+// Source: Haug, section 3.4; rolling without slip.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,6 @@ class SlideOnCurve {
   /// `arm`: R b.
   SlideOnCurve(BodyCurve<S> curve, const Vec2<S>& point, const S& arm, double start)
       : curve_(std::move(curve)), point_(point), arm_(arm), foot_(start) {
-    closed_ = !curve_.is_line() && !curve_.ends() && !curve_.holds();
     if (!curve_.is_line()) lay_pieces();
     start_ = travel(S(start));
   }
@@ -38,10 +37,9 @@ class SlideOnCurve {
     follow(plain(x));
     T s(foot_);
     if constexpr (!std::is_same_v<T, double>) {
-      const double bend = descent(curve_.plain(foot_), plain(x)).bend;
-      // Each step is exact to one order more: two in time, and one by design parameters or what is moved like them.
-      constexpr bool by_design = !std::is_same_v<S, double> || std::is_same_v<T, Taylor<DesignScalar>>;
-      constexpr int steps = by_design ? 3 : 2;
+      const double bend = foot_descent(curve_.plain(foot_), plain(x)).bend;
+      // Each step is exact to one order more: two, and three where a series in time is one by parameters as well.
+      constexpr int steps = std::is_same_v<T, Taylor<DesignScalar>> ? 3 : 2;
       for (int step = 0; step < steps; ++step) {
         const CurvePoint<T> c = curve_.evaluate(s);
         s = s - dot(c.p - x, c.d1) / T(bend);
@@ -52,10 +50,6 @@ class SlideOnCurve {
   }
 
  private:
-  static Descent descent(const CurvePoint<double>& c, const Vec2<double>& x) {
-    const double size = squared_norm(c.d1);
-    return {dot(c.p - x, c.d1), size + dot(c.p - x, c.d2), size};
-  }
   /// Pieces end at the knots of the curve, where its third derivative jumps, and between them: every second of its
   /// samples is such a place. The rule is exact on circles, and to rounding on a quarter of a piece of a spline.
   void lay_pieces() {
@@ -70,18 +64,16 @@ class SlideOnCurve {
   /// Moves foot_ to the foot of x, on a closed curve by less than half a period.
   void follow(const Vec2<double>& x) const {
     double s = foot_;
-    if (!follow_minimum(
-            curve_, [&](const CurvePoint<double>& c) { return descent(c, x); }, s))
-      s = curve_.nearest(x);
-    foot_ = closed_ ? foot_ + std::remainder(s - foot_, curve_.range()) : s;
+    follow_foot(curve_, x, s);
+    foot_ = curve_.is_closed() ? foot_ + std::remainder(s - foot_, curve_.range()) : s;
   }
   /// Length and turn of the curve from the start of its range to s, of which the foot is the value.
   template <class T>
   std::array<T, 2> travel(const T& s) const {
     if (curve_.is_line()) return {norm(curve_.evaluate(s).d1) * s, T(0.0)};
-    const double turns = closed_ ? std::floor((foot_ - ends_.front()) / curve_.range()) : 0;
+    const double turns = curve_.is_closed() ? std::floor((foot_ - ends_.front()) / curve_.range()) : 0;
     const double there = foot_ - turns * curve_.range();
-    const auto next = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, there);
+    const auto next = std::upper_bound(ends_.begin() + 1, ends_.end(), there);
     const auto piece = static_cast<std::size_t>(next - ends_.begin()) - 1;
     std::array<T, 2> way = gauss(T(ends_[piece]), s - T(turns * curve_.range()));
     for (std::size_t k = 0; k < 2; ++k) way[k] = way[k] + T(until_[piece][k] + S(turns) * until_.back()[k]);
@@ -107,11 +99,12 @@ class SlideOnCurve {
   BodyCurve<S> curve_;
   Vec2<S> point_;
   S arm_;
-  bool closed_ = false;
   std::vector<double> ends_;             // of pieces of the curve
   std::vector<std::array<S, 2>> until_;  // length and turn of the curve up to each of them
   std::array<S, 2> start_{};             // and up to the place where w is zero
-  mutable double foot_;                  // found last: where the search for the next one begins
+  // Found last: where the search for the next one begins, and, as no state tells them, the whole turns on a closed
+  // curve.
+  mutable double foot_;
 };
 
 }  // namespace catena

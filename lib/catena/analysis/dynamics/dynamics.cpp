@@ -22,7 +22,7 @@ Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_o
       singular_(equations_) {
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
-  choose_method();
+  choose_method(false);
 }
 
 void Dynamics::start_from(const SystemState& state) {

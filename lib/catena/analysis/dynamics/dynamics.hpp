@@ -42,7 +42,8 @@ class Dynamics {
 
   /// Starts from a state of an earlier analysis instead of the given configuration at t = 0.
   void start_from(const SystemState& state);
-  /// Assembles and makes velocities consistent, if nothing did before, and goes through the grid.
+  /// Assembles and makes velocities consistent, if nothing did before, and goes through the grid. An automatic method
+  /// is rk8 where the observer sees the stages; see method().
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
 
   /// run() in parts, for motions that go on side by side: begin(), go_on() as often as one likes, end().
@@ -105,7 +106,7 @@ class Dynamics {
   Frame<double> frame(int body) const { return frame_of(evaluator_, q_, body); }
 
  private:
-  void choose_method();
+  void choose_method(bool stages_are_watched);
   Report check_options() const;
   Report prepare(std::vector<std::string>& warnings);
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;

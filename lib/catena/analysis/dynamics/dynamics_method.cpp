@@ -86,10 +86,11 @@ Report Dynamics::check_freedoms() const {
 
 // Multistep methods save evaluations in smooth motions of many bodies; in closed loops, which may come to singular
 // positions, and at tolerances near rounding, Runge-Kutta is the safer choice.
-void Dynamics::choose_method() {
+void Dynamics::choose_method(bool stages_are_watched) {
   method_ = options_.method;
   if (method_ != IntegrationMethod::automatic) return;
-  const bool multistep = options_.step == 0 && options_.tolerance >= least_multistep_tolerance &&
+  // Derivatives that are carried along the stages of order 8 cost no evaluations; beside steps of Adams all are theirs.
+  const bool multistep = !stages_are_watched && options_.step == 0 && options_.tolerance >= least_multistep_tolerance &&
                          plan_->moving >= least_multistep_bodies && !has_closed_loops(*plan_);
   method_ = multistep ? IntegrationMethod::adams : IntegrationMethod::rk8;
 }

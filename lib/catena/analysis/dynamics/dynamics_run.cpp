@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
-#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/base/flush_denormals.hpp"
 #include "catena/columns/energy.hpp"
@@ -21,10 +20,8 @@ constexpr double no_jump = 1e-10;
 
 }  // namespace
 
-// What is carried along with the stages of Runge-Kutta steps costs no evaluation of its own.
 AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
-  choose_method();
-  if (options_.method == IntegrationMethod::automatic && stage_watcher_of(observer)) method_ = IntegrationMethod::rk8;
+  choose_method(observer.stage_watcher() != nullptr);
   begin(grid, needs);
   go_on(grid.size(), observer);
   return end();
@@ -161,8 +158,7 @@ Report Dynamics::set_out() {
 
 bool Dynamics::go_on(std::int64_t rows, RowObserver& observer) {
   const FlushDenormals flush;
-  if (auto* const shows = dynamic_cast<RungeKutta*>(integrator_.get()))
-    shows->show_stages_to(stage_watcher_of(observer));
+  if (integrator_) integrator_->show_stages_to(observer.stage_watcher());
   rows = std::min(rows, run_.grid.size());
   while (run_.outcome.ok() && run_.next_row < rows && !run_.stopped()) run_.outcome = next(observer);
   if (run_.outcome.status == Status::lock_up && !std::exchange(run_.locked, true)) give_row_at_lock_up(observer);

@@ -16,7 +16,7 @@ namespace {
 constexpr int most_at_once = 100;
 
 /// Passes rows on and counts them.
-class CountingObserver final : public RowObserver, public WatchesStages {
+class CountingObserver final : public RowObserver {
  public:
   CountingObserver(RowObserver& target, std::int64_t& rows) : target_(target), rows_(rows) {}
   bool observe(const Snapshot& snapshot) override {
@@ -26,7 +26,7 @@ class CountingObserver final : public RowObserver, public WatchesStages {
   bool proceed(double t) override { return target_.proceed(t); }
   bool wants_stretches() const override { return target_.wants_stretches(); }
   bool cover(const MotionStretch& stretch) override { return target_.cover(stretch); }
-  StageWatcher* stage_watcher() override { return stage_watcher_of(target_); }
+  StageWatcher* stage_watcher() override { return target_.stage_watcher(); }
 
  private:
   RowObserver& target_;

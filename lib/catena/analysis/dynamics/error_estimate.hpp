@@ -39,7 +39,7 @@ struct EstimatedError {
 DynamicsOptions finer_options(const DynamicsOptions& options);
 
 /// Follows the rows of the finer run with the other one, compares, and passes them on.
-class ErrorComparison final : public RowObserver, public WatchesStages {
+class ErrorComparison final : public RowObserver {
  public:
   /// `asked` has begun; `target` gets the rows, and before each of them `beside`, if there is one, the same row of the
   /// run that was asked for.
@@ -49,7 +49,7 @@ class ErrorComparison final : public RowObserver, public WatchesStages {
   bool proceed(double t) override;
   bool wants_stretches() const override { return target_.wants_stretches(); }
   bool cover(const MotionStretch& stretch) override { return target_.cover(stretch); }
-  StageWatcher* stage_watcher() override { return stage_watcher_of(target_); }
+  StageWatcher* stage_watcher() override { return target_.stage_watcher(); }
   const EstimatedError& error() const { return error_; }
 
  private:

@@ -8,6 +8,13 @@
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
+namespace {
+
+// The size of what may be nothing but rounding, in units of its column: distances of some 1e-14 count as zero then.
+constexpr double least_size = thresholds::sum_rounding / thresholds::carried_rounding;
+
+}  // namespace
+
 EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan& plan, const ColumnSources& sources)
     : events_(std::move(events)) {
   ColumnSources untimed = sources;
@@ -27,17 +34,15 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
       static_cast<void>(model.element_type(event.element));  // throws for what is none
   }
   side_.assign(events_.size(), 0);
-  largest_.assign(events_.size(), 0.0);
+  for (const Event& event : events_) largest_.push_back(event.value == 0 ? least_size : 0);
   found_at_.assign(events_.size(), -std::numeric_limits<double>::infinity());
   for (std::vector<double>& g : g_) g.resize(events_.size());
   angles_.resize(static_cast<std::size_t>(plan.moving));
 }
 
 double EventWatch::tiny(std::size_t k) const {
-  // A distance from the value below this part of the column's size counts as zero; where the value is zero, below this
-  // number as well: a column that is nothing but rounding passes it all the time.
-  const double size = thresholds::carried_rounding * std::max(largest_[k], std::abs(target(k)));
-  return target(k) == 0 ? std::max(thresholds::sum_rounding, size) : size;
+  // A distance from the value below this part of the column's size counts as zero.
+  return thresholds::carried_rounding * std::max(largest_[k], std::abs(target(k)));
 }
 
 int EventWatch::side(std::size_t k, double g) const {
@@ -74,7 +79,8 @@ void EventWatch::watch(std::vector<Transition> transitions, const Needs& needs) 
   side_.resize(events_.size());
   for (const Transition& transition : transitions_) side_.push_back(transition.side);
   largest_.resize(events_.size());
-  for (const Transition& transition : transitions_) largest_.push_back(transition.scale);
+  for (const Transition& transition : transitions_)
+    largest_.push_back(transition.scale > 0 ? transition.scale : least_size);
   found_at_.resize(events_.size());
   found_at_.resize(size, -std::numeric_limits<double>::infinity());
   for (std::vector<double>& g : g_) g.resize(size);

@@ -14,11 +14,11 @@
 namespace catena {
 namespace {
 
-// In length scales or rad: a residual below `rounding` is zero, a correction predicted to be below `negligible` is not
-// computed; one that is solved need not shrink any more.
+// In length scales or rad: a residual below `rounding` is zero, a correction predicted to be below `not_computed` is
+// not computed; one that is solved need not shrink any more.
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double rounding = 1e-16;
-constexpr double negligible = 1e-14;
+constexpr double not_computed = 1e-14;
 // Shifts are compared with the length scale, or with this part of the extent of a long structure.
 constexpr double part_of_extent = 0.01;
 // Factors from further away than this are replaced: a new factorization costs two or three solves.
@@ -191,7 +191,7 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     // constant.
     const bool small = outcome.residual <= attainable;
     const bool settled =
-        rate * size <= std::max(negligible, epsilon * extent_) || outcome.residual > poor_contraction * last_residual;
+        rate * size <= std::max(not_computed, epsilon * extent_) || outcome.residual > poor_contraction * last_residual;
     if (outcome.residual <= rounding || (outcome.iterations > 0 && small && settled)) {
       outcome.converged = true;
       return outcome;
@@ -279,7 +279,7 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
     all = sizes[1].all;
     if (!std::isfinite(size)) return false;
     if (k > 0) rate = std::max(rate, size / last_size);
-    if (rate * size <= negligible * all || size <= rounding * all) {
+    if (rate * size <= not_computed * all || size <= rounding * all) {
       left_.of_rates = std::max(left_.of_rates, rate * size / all);
       return true;
     }
@@ -371,7 +371,7 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
     if (!std::isfinite(all)) return false;
     // The ratio of corrections alone may be that of forces while what is left is moments.
     const double ratio = k > 0 ? size / last_size : 0, rate = std::max(refinement_rate(), ratio);
-    if (rate * size <= negligible * all || size <= rounding * all) {
+    if (rate * size <= not_computed * all || size <= rounding * all) {
       if (all > 0) left_.of_multipliers = std::max(left_.of_multipliers, rate * size / all);
       return true;
     }

@@ -8,6 +8,7 @@
 #include <array>
 #include <cassert>
 #include <span>
+#include <vector>
 
 #include "catena/analysis/motion/tableau.hpp"
 
@@ -25,6 +26,11 @@ struct WeightedVectors {
 void add_weighted(const WeightedVectors& sum, std::size_t size, double* out);
 
 }  // namespace detail
+
+/// y += weight k.
+inline void add_times(std::vector<double>& y, double weight, const std::vector<double>& k) {
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
+}
 
 /// `slope(stage)`: where its vector begins. `begin`: empty, as zero, or of the size of `out`, which it may be. `of`:
 /// at most 17 terms.

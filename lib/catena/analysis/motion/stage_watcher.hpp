@@ -11,7 +11,6 @@
 #include <span>
 
 #include "catena/analysis/motion/equations_of_motion.hpp"
-#include "catena/analysis/run/row_observer.hpp"
 
 namespace catena {
 
@@ -24,18 +23,5 @@ class StageWatcher {
   virtual void watch_stage(int s, double t, Side side, std::span<const double> y, std::span<const double> slope,
                            EquationsOfMotion& equations) = 0;
 };
-
-/// A RowObserver that has a StageWatcher, or passes on what it sees to one that may.
-class WatchesStages {
- public:
-  virtual ~WatchesStages() = default;
-  /// nullptr: there is none.
-  virtual StageWatcher* stage_watcher() = 0;
-};
-
-inline StageWatcher* stage_watcher_of(RowObserver& observer) {
-  auto* const watches = dynamic_cast<WatchesStages*>(&observer);
-  return watches ? watches->stage_watcher() : nullptr;
-}
 
 }  // namespace catena

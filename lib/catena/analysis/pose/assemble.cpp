@@ -150,10 +150,13 @@ bool Assembler::restore_from_beside(std::span<double> q, std::span<const double>
                                     bool far_too, AssemblyOutcome& outcome) {
   const std::vector<double> saddle(q.begin(), q.end());
   std::mt19937_64 random(1);
+  const std::vector<CurvePlace> places = evaluator_.curve_places();
   std::vector<double> beside_crossing;
+  std::vector<CurvePlace> places_beside;
   for (std::size_t k = 0; k < most_starts; ++k) {
     const Start& start = starts[std::min(k, std::size(starts) - 1)];
     if (start.from_estimate && !far_too) break;
+    evaluator_.go_to_curve_places(places);
     std::copy_n(start.from_estimate ? estimate.begin() : std::span<const double>(saddle).begin(), q.size(), q.begin());
     for (const int c : plan_.coordinate) {
       const double number = 2 * std::ldexp(static_cast<double>(random() >> 11), -53) - 1;
@@ -161,11 +164,16 @@ bool Assembler::restore_from_beside(std::span<double> q, std::span<const double>
     }
     if (restore(q, tolerance, max_iterations, outcome)) {
       if (!ends_beside_crossing_) return true;
-      if (beside_crossing.empty()) beside_crossing.assign(q.begin(), q.end());
+      if (beside_crossing.empty()) {
+        beside_crossing.assign(q.begin(), q.end());
+        places_beside = evaluator_.curve_places();
+      }
     }
     if (static_cast<double>(outcome.iterations) * plan_.rows > most_work) break;
   }
   std::copy(beside_crossing.begin(), beside_crossing.end(), q.begin());
+  evaluator_.go_to_curve_places(beside_crossing.empty() ? places : places_beside);
+  ends_beside_crossing_ = true;
   return !beside_crossing.empty();
 }
 
@@ -200,9 +208,12 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
       outcome.residual = residual;
     }
   } else if (ends_beside_crossing_) {
+    const std::vector<CurvePlace> places = evaluator_.curve_places();
     std::vector<double> beside(q.begin(), q.end());
-    if (restore_from_beside(beside, estimate, tolerance, false, outcome))
+    if (restore_from_beside(beside, estimate, tolerance, false, outcome) && !ends_beside_crossing_)
       std::copy(beside.begin(), beside.end(), q.begin());
+    else
+      evaluator_.go_to_curve_places(places);
   }
   if (!met) {
     if (const int element = element_out_of_range(estimate); element >= 0) {

@@ -13,6 +13,7 @@
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/thresholds.hpp"
+#include "catena/assembly/systems/tangent.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -34,41 +35,10 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// sum mu Phi_qq at a place, element by element.
-class ConstraintCurvature {
- public:
-  ConstraintCurvature(const Evaluator& evaluator, std::span<const double> mu) : plan_(evaluator.plan()) {
-    evaluator.visit_constraint_hessians(mu, [&](int i, int j, const ElementMatrix& matrix) {
-      parts_.push_back({i, j, matrix});
-    });
-  }
-
-  /// y += sum mu Phi_qq x over the coordinates of moving bodies.
-  void multiply_add(std::span<const double> x, std::span<double> y) const {
-    for (const Part& part : parts_) {
-      int place[6];
-      for (int k = 0; k < 6; ++k) {
-        const int column = plan_.column_of(part.i, part.j, k);
-        place[k] = column < 0 ? -1 : plan_.coordinate[at(column)];
-      }
-      for (int row = 0; row < 6; ++row) {
-        if (place[row] < 0) continue;
-        double sum = 0;
-        for (int c = 0; c < 6; ++c) {
-          if (place[c] >= 0) sum += part.matrix[at(6 * row + c)] * x[at(place[c])];
-        }
-        y[at(place[row])] += sum;
-      }
-    }
-  }
-
- private:
-  struct Part {
-    int i, j;
-    ElementMatrix matrix;
-  };
-  const Plan& plan_;
-  std::vector<Part> parts_;
+/// An entry of sum mu Phi_qq, by coordinates.
+struct CurvatureEntry {
+  int row, column;
+  double value;
 };
 
 }  // namespace
@@ -99,12 +69,15 @@ double Assembler::find_approach(std::span<const double> q, std::span<const doubl
   if (std::sqrt(first) <= settled * distance) return 0;
   const double enough =
       first * std::pow(std::clamp(std::sqrt(first) / distance, thresholds::same_value, direction_digits), 2);
-  const ConstraintCurvature curvature(evaluator_, lambda_);
+  std::vector<CurvatureEntry> curvature;
+  visit_curvature(evaluator_, lambda_, [&](int row, int column, double value) {
+    if (value != 0) curvature.push_back({row, column, value});
+  });
   along = z;
   double now = first;
   for (int k = 0; k < max_directions && now > enough; ++k) {
     for (std::size_t c = 0; c < coordinates; ++c) curved[c] = weights_[c] * along[c];
-    curvature.multiply_add(along, curved);
+    for (const CurvatureEntry& entry : curvature) curved[at(entry.row)] += entry.value * along[at(entry.column)];
     const double bend = dot(along, curved);
     if (!(bend > 0)) break;
     if (k == 0) std::fill(step_.begin(), step_.end(), 0.0);
@@ -126,6 +99,7 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
   double distance = weighted_distance(q, estimate), last_slope = 0;
   for (int k = 0; k < max_approach_iterations && distance > 0; ++k) {
     evaluator_.set_configuration(q);
+    const std::vector<CurvePlace> places = evaluator_.curve_places();
     evaluator_.jacobian(values_);
     if (!solver_->factorize(values_, evaluator_.counters)) return;
     const double slope = find_approach(q, estimate);
@@ -142,13 +116,14 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
     for (double factor = turn > largest_turn_of_a_step ? largest_turn_of_a_step / turn : 1; factor > 1e-3 && !found;
          factor /= 2) {
       step_ = direction;
+      evaluator_.go_to_curve_places(places);
       advance(q, factor, candidate);
       AssemblyOutcome trial;
       found = restore(candidate, tolerance, max_return_iterations, trial) &&
               weighted_distance(candidate, estimate) < closer;
       outcome.iterations += trial.iterations;
     }
-    if (!found) return;
+    if (!found) return evaluator_.go_to_curve_places(places);
     std::copy(candidate.begin(), candidate.end(), q.begin());
     distance = weighted_distance(q, estimate);
   }

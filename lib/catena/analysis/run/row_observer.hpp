@@ -27,6 +27,8 @@ struct MotionStretch {
   }
 };
 
+class StageWatcher;  // motion/stage_watcher.hpp
+
 class RowObserver {
  public:
   virtual ~RowObserver() = default;
@@ -44,6 +46,8 @@ class RowObserver {
     static_cast<void>(stretch);
     return true;
   }
+  /// What sees the stages of the steps; nullptr: nothing does.
+  virtual StageWatcher* stage_watcher() { return nullptr; }
 };
 
 /// Adapts a callable.

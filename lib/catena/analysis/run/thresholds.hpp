@@ -13,7 +13,6 @@ namespace catena::thresholds {
 /// sum, a force or an energy of two or three terms; each product and each sum rounds by half of epsilon. Positions of
 /// the size of the length scale, or rad, cannot be told apart below it.
 inline constexpr double few_roundings = 4 * std::numeric_limits<double>::epsilon();
-inline constexpr double position_rounding = few_roundings;
 
 /// Of a sum of some dozen terms that are themselves sums of products, in parts of the largest: residuals of equations,
 /// of forces and of moments, entries of a stiffness. No bracket and no refinement gets closer: 1.4e-14.
@@ -42,7 +41,6 @@ inline constexpr double closed_gap = negligible, no_force = negligible;
 /// Two places, instants, rates or directions that differ by less than this part are the same: configurations are given
 /// to some seven digits, and what differences or null vectors tell is good to 1e-7 and better.
 inline constexpr double same_value = 1e-6;
-inline constexpr double same_rate = same_value;
 
 /// A place that the scene gives as closed may be open, or reach into the other body, by this part of the length scale
 /// (or rad). More contradicts the scene.

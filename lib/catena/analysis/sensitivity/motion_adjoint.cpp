@@ -33,7 +33,6 @@ MotionAdjoint::MotionAdjoint(const Evaluator& of, const DesignModels& models, in
   zero_rows_ = mu_;
   zero_loads_ = w_;
   slope_.assign(2 * n_, 0.0);
-  zero_state_ = slope_;
   masses_.assign(n_, 0.0);
   for (int c = 0; c < 3 * plan().moving; ++c) {
     if (plan().column[at(c)] >= 0) masses_[at(c)] = groups().front().mechanism.mass(c).v;

@@ -164,7 +164,7 @@ class MotionAdjoint : public StateDerivatives {
   std::vector<Way> ways_;                            // by measure
   int blocks_ = 0;
   bool goes_on_ = false;  // the motion goes on from where the last step ended
-  Vector w_, mu_, zero_rows_, zero_loads_, zero_state_, masses_, slope_;
+  Vector w_, mu_, zero_rows_, zero_loads_, masses_, slope_;
 };
 
 }  // namespace catena

@@ -9,10 +9,6 @@
 namespace catena {
 namespace {
 
-void add_scaled(std::vector<double>& y, double weight, const std::vector<double>& k) {
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
-}
-
 bool any(const std::vector<double>& y) {
   return std::any_of(y.begin(), y.end(), [](double x) { return x != 0; });
 }
@@ -94,14 +90,16 @@ void MotionAdjoint::go_back(const Step& step, Way& way, bool interpolated) {
     // Stage 12 is the step's end: all before it are reached through the projection there.
     if (s == table.stages - 1) project_back(step.to, Side::before, step.end, way, way.y1);
     const auto vector_of = [&](int j) { return (j == step_end ? way.y1 : back_[at(j)]).data(); };
-    add_stages(interpolated ? way.slopes[at(s)] : zero_state_, h, terms[at(s)], vector_of, slope_);
+    const std::span<const double> begin =
+        interpolated ? std::span<const double>(way.slopes[at(s)]) : std::span<const double>();
+    add_stages(begin, h, terms[at(s)], vector_of, slope_);
     stage_back(s, slope_, way);
-    if (s == table.stages) add_scaled(way.y1, 1, back_[at(s)]);
+    if (s == table.stages) add_times(way.y1, 1, back_[at(s)]);
   }
   for (int s = 0; s < stages; ++s) {
-    if (s != table.stages) add_scaled(way.y0, 1, back_[at(s)]);
+    if (s != table.stages) add_times(way.y0, 1, back_[at(s)]);
   }
-  add_scaled(way.y0, 1, way.y1);
+  add_times(way.y0, 1, way.y1);
 }
 
 bool MotionAdjoint::add_start(const Vector& y0, Vector& gradient) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "catena/analysis/motion/stage_sums.hpp"
 #include "catena/analysis/sensitivity/motion_adjoint.hpp"
 #include "catena/base/at.hpp"
 
@@ -11,10 +12,6 @@ namespace {
 // Most rounds of Newton's method that bring the interpolant onto the constraints: it is as near to them as the
 // tolerance of the motion.
 constexpr int most_rounds_inside = 4;
-
-void add_weighted(std::vector<double>& y, double weight, const std::vector<double>& k) {
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
-}
 
 }  // namespace
 
@@ -52,7 +49,7 @@ bool MotionAdjoint::add_inside(const Step& step, std::span<const Look> looks) {
   Vector there(2 * n_);
   for (std::size_t i = 0; i < there.size(); ++i) there[i] = step.begin[i] + weights.end * (step.end[i] - step.begin[i]);
   for (std::size_t s = 0; s < weights.slope.size(); ++s) {
-    if (weights.slope[s] != 0) add_weighted(there, h * weights.slope[s], again_.stage(static_cast<int>(s)).slope);
+    if (weights.slope[s] != 0) add_times(there, h * weights.slope[s], again_.stage(static_cast<int>(s)).slope);
   }
   if (!factorize_end(t, Side::after, there)) return false;
   end_->equations.project_position(std::span(there).first(n_), most_rounds_inside);
@@ -68,9 +65,9 @@ bool MotionAdjoint::add_inside(const Step& step, std::span<const Look> looks) {
     if (back[m].empty()) continue;
     Way& way = ways_[m];
     project_back(t, Side::after, there, way, back[m]);
-    add_weighted(way.y1, weights.end, back[m]);
-    add_weighted(way.y0, 1 - weights.end, back[m]);
-    for (std::size_t s = 0; s < weights.slope.size(); ++s) add_weighted(way.slopes[s], h * weights.slope[s], back[m]);
+    add_times(way.y1, weights.end, back[m]);
+    add_times(way.y0, 1 - weights.end, back[m]);
+    for (std::size_t s = 0; s < weights.slope.size(); ++s) add_times(way.slopes[s], h * weights.slope[s], back[m]);
     way.begun = true;
   }
   return true;

@@ -27,9 +27,7 @@ MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignMod
   if (groups().empty() || !AdjointMechanism::why_not(evaluator.model()).empty()) return;
   again_ = std::make_unique<RecomputedSteps>(this->evaluator());
   if (!again_->why_not().empty()) return;
-  std::vector<DesignMechanism*> mechanisms;
-  for (Group& group : groups()) mechanisms.push_back(&group.mechanism);
-  tangents_ = std::make_unique<MotionTangents>(this->evaluator(), mechanisms);
+  tangents_ = std::make_unique<MotionTangents>(this->evaluator(), mechanisms());
   for (auto* rows : {&rows_.begin, &rows_.end, &rows_.now, &rows_.slope})
     rows->assign(2 * n_ * tangents_->width(), 0.0);
 }

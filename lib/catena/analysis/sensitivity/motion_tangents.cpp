@@ -7,14 +7,6 @@
 #include "catena/base/design_scalar.hpp"
 
 namespace catena {
-namespace {
-
-void add_rows(std::vector<double>& y, double weight, const std::vector<double>& k) {
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
-}
-
-}  // namespace
-
 MotionTangents::MotionTangents(const Evaluator& evaluator, std::vector<DesignMechanism*> groups)
     : plan_(evaluator.plan()),
       groups_(std::move(groups)),
@@ -33,12 +25,6 @@ MotionTangents::MotionTangents(const Evaluator& evaluator, std::vector<DesignMec
   for (int c = 0; c < 3 * plan_.moving; ++c) {
     if (plan_.column[at(c)] >= 0) masses_[at(c)] = groups_.front()->mass(c).v;
   }
-}
-
-int MotionTangents::reached_elements() const {
-  int sum = 0;
-  for (const AdjointMechanism::Reached& reached : reached_) sum += reached.elements();
-  return sum;
 }
 
 void MotionTangents::add_parameters(double t, Side side, std::span<const double> lambda, std::span<const double> qdd,
@@ -112,7 +98,7 @@ void MotionTangents::interpolate(double part, double h, const Rows& begin, const
   const InterpolantWeights weights = interpolant_weights(part);
   for (std::size_t i = 0; i < y.size(); ++i) y[i] = begin[i] + weights.end * (end[i] - begin[i]);
   for (std::size_t s = 0; s < weights.slope.size(); ++s) {
-    if (weights.slope[s] != 0) add_rows(y, h * weights.slope[s], slopes_[s]);
+    if (weights.slope[s] != 0) add_times(y, h * weights.slope[s], slopes_[s]);
   }
 }
 

@@ -53,7 +53,6 @@ class MotionTangents {
   void slope(const Place& place, const Rows& y, Rows& slope);
   /// Rows of multipliers of the last slope().
   const Rows& multipliers() const { return lambda_; }
-  int reached_elements() const;
 
  private:
   void add_parameters(double t, Side side, std::span<const double> lambda, std::span<const double> qdd,

@@ -121,6 +121,16 @@ std::optional<double> rate_at_end(const MotionStretch& stretch, const std::funct
   return best;
 }
 
+std::optional<double> rate_at_end(const MotionStretch& stretch, const ColumnSet& column) {
+  return rate_at_end(stretch, [&](double t) -> std::optional<double> {
+    const std::optional<Snapshot> there = stretch.at(t);
+    if (!there) return {};
+    double value = 0;
+    column.evaluate(*there, {&value, 1});
+    return value;
+  });
+}
+
 void MovingInstant::add(const FunctionJump& jump, std::size_t first) {
   const bool alone = order == 0;
   for (std::size_t p = 0; p < parameters_at_once && first + p < rate.size(); ++p) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "catena/analysis/run/row_observer.hpp"
+#include "catena/columns/column_set.hpp"
 #include "catena/base/design_scalar.hpp"
 #include "catena/base/time_function.hpp"
 
@@ -36,6 +37,8 @@ FunctionJump jump_of(const TimeFunction<DesignScalar>& function, double t);
 /// df/dt at the end of a stretch, from its inside, by differences of order 4; nothing where f, or the motion, cannot be
 /// looked at, or the differences do not settle.
 std::optional<double> rate_at_end(const MotionStretch& stretch, const std::function<std::optional<double>(double)>& f);
+/// The same of a single column.
+std::optional<double> rate_at_end(const MotionStretch& stretch, const ColumnSet& column);
 
 /// What the functions of a model do together at an instant.
 struct MovingInstant {

@@ -101,6 +101,11 @@ class StateDerivatives {
   Evaluator& evaluator() { return evaluator_; }
   const Plan& plan() const { return evaluator_.plan(); }
   std::vector<Group>& groups() { return groups_; }
+  std::vector<DesignMechanism*> mechanisms() {
+    std::vector<DesignMechanism*> all;
+    for (Group& group : groups_) all.push_back(&group.mechanism);
+    return all;
+  }
   bool fail(std::string why) {
     if (why_.empty()) why_ = std::move(why);
     return false;

@@ -6,6 +6,7 @@
 #include "catena/analysis/spectrum/circulatory_words.hpp"
 #include "catena/analysis/statics/solvers/static_descent.hpp"
 #include "catena/analysis/statics/solvers/static_settling.hpp"
+#include "catena/analysis/statics/solvers/static_steps.hpp"
 #include "catena/analysis/statics/static_attempts.hpp"
 #include "catena/analysis/statics/static_explanation.hpp"
 #include "catena/analysis/statics/static_search.hpp"
@@ -61,8 +62,8 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
 }
 
 bool StaticSearch::leave_divergence(std::vector<double>& q, std::vector<double>& lambda, StaticResult& result) {
-  const std::vector<double> q_before = q, lambda_before = lambda;
-  const std::vector<CurvePlace> places = system_.evaluator().curve_places();
+  KeptPlace before;
+  before.keep(system_, q, lambda);
   const double residual = result.residual;
   const auto& modes = result.stability->motions.modes;
   const auto lowest = std::find_if(modes.begin(), modes.end(), [](const CirculatoryMode& m) { return !m.is_pair(); });
@@ -70,10 +71,7 @@ bool StaticSearch::leave_divergence(std::vector<double>& q, std::vector<double>&
   const double largest = system_.change_norm(shape);
   for (const double size : pushes_aside) {
     for (const double side : {1.0, -1.0}) {
-      q = q_before;
-      lambda = lambda_before;
-      system_.evaluator().go_to_curve_places(places);
-      system_.move_to(q);
+      before.take_back(system_, q, lambda);
       system_.advance(q, shape, side * size / largest, 10);
       if (!restore_constraints(system_, q)) continue;
       const StaticOutcome outcome = settle(q, lambda, usual_steps_aside, result);
@@ -86,11 +84,8 @@ bool StaticSearch::leave_divergence(std::vector<double>& q, std::vector<double>&
       return true;
     }
   }
-  q = q_before;
-  lambda = lambda_before;
   result.residual = residual;
-  system_.evaluator().go_to_curve_places(places);
-  system_.move_to(q);
+  before.take_back(system_, q, lambda);
   judge_.weigh(lambda);
   return false;
 }

@@ -9,6 +9,7 @@
 #include "catena/analysis/statics/solvers/static_ipopt.hpp"
 #include "catena/analysis/statics/solvers/static_nlopt.hpp"
 #include "catena/analysis/statics/solvers/static_settling.hpp"
+#include "catena/analysis/statics/solvers/static_steps.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -142,8 +143,8 @@ StaticOutcome StaticTrial::run_with_gaps(std::vector<double>& q, std::vector<dou
 // Refines the result of another solver to rounding; keeps it where Newton's method would move to another equilibrium.
 StaticOutcome StaticTrial::polish_by_newton(std::vector<double>& q, std::vector<double>& lambda,
                                             StaticOutcome outcome) {
-  const std::vector<double> found = q, multipliers = lambda;
-  const std::vector<CurvePlace> places = system_.evaluator().curve_places();
+  KeptPlace found;
+  found.keep(system_, q, lambda);
   // To rounding, whatever the tolerance: the steps cost little beside those before.
   const StaticOutcome polished =
       solve_by_newton(system_, q, lambda,
@@ -151,7 +152,7 @@ StaticOutcome StaticTrial::polish_by_newton(std::vector<double>& q, std::vector<
   std::vector<double> change(at(system_.plan().columns));
   for (std::size_t c = 0; c < change.size(); ++c) {
     const std::size_t k = at(system_.plan().coordinate[c]);
-    change[c] = q[k] - found[k];
+    change[c] = q[k] - found.q[k];
   }
   const bool better = polished.converged() || polished.residual < outcome.residual;
   if (better && system_.change_norm(change) <= largest_polish) {
@@ -159,10 +160,7 @@ StaticOutcome StaticTrial::polish_by_newton(std::vector<double>& q, std::vector<
     outcome.step = polished.step;
     return outcome;
   }
-  q = found;
-  lambda = multipliers;
-  system_.evaluator().go_to_curve_places(places);
-  system_.move_to(q);
+  found.take_back(system_, q, lambda);
   return outcome;
 }
 

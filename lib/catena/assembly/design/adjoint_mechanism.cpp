@@ -26,15 +26,19 @@ Vec2<double> arm_of(const Block& block, const Revolute<double>& pin, int e, int 
 
 }  // namespace
 
-std::string AdjointMechanism::why_not(const Model& model, bool own_curves) {
+std::string AdjointMechanism::why_not(const Model& model, bool has_phases) {
   if (!model.laws.empty()) return "laws of state act";
   std::string why;
   const auto look = [&](const auto& list, int) {
     using E = ElementOf<decltype(list)>;
     if (list.empty()) return;
     if constexpr (std::is_same_v<E, CustomForce<double>>) why = "elements made in C++ act";
-    if constexpr (std::is_same_v<E, CustomConstraint<double>>) why = own_curves ? why : "elements made in C++ act";
-    if constexpr (SearchesCurve<E>) why = own_curves ? why : "contacts run on curves";
+    if constexpr (std::is_same_v<E, CustomConstraint<double>>) {
+      if (!has_phases) why = "elements made in C++ act";
+    }
+    if constexpr (SearchesCurve<E>) {
+      if (!has_phases) why = "contacts run on curves";
+    }
     if constexpr (Joining<E>) why = "a rope runs over several pulleys";
   };
   for_each_list(model.constraints, look);

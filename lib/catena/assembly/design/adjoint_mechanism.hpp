@@ -28,9 +28,9 @@ struct AdjointWeights {
 
 class AdjointMechanism {
  public:
-  /// Empty, or why the model cannot be asked, as a phrase. `own_curves`: the model belongs to who asks, with the slides
-  /// of its contacts, so that searches along its curves may be moved (set_motion()).
-  static std::string why_not(const Model& model, bool own_curves = false);
+  /// Empty, or why the model cannot be asked, as a phrase. `has_phases`: contacts on curves are moved to where the
+  /// motion had them (Evaluator::go_to_curve_places()), and the model may have slides of contacts.
+  static std::string why_not(const Model& model, bool has_phases = false);
 
   /// Of the model in plain numbers of an evaluator, whose configuration and time are read where asked.
   explicit AdjointMechanism(const Evaluator& evaluator);

@@ -47,7 +47,8 @@ DesignMechanism::DesignMechanism(const Evaluator& evaluator, std::shared_ptr<con
   motion_.resize(at(plan_->bodies) + 1);
   place_immobile_bodies();
   contacts_.resize(at(plan_->contacts));
-  take_given_contacts(*plan_, model_->constraints, contacts_);
+  for_each_contact(*plan_, model_->constraints, contacts_,
+                   [&](const auto& entry, CurvePlace& contact) { contact = evaluator.contact(entry.id); });
 }
 
 // Breadth first from what is fixed, along the welds that were eliminated: as the plan has it.

@@ -28,19 +28,14 @@ void derive(const E& element, const detail::DesignFrames<DesignScalar>& f, const
 }  // namespace
 
 void DesignMechanism::go_to_curve_places(std::span<const CurvePlace> places) {
-  for_each_contact(*plan_, model_->constraints, contacts_, [&](const auto& entry, CurvePlace& contact) {
-    for (const CurvePlace& place : places) {
-      if (place.element == entry.id) contact = place;
-    }
-  });
+  for (const CurvePlace& place : places) {
+    if (const int k = plan_->element_contact[at(place.element)]; k >= 0) contacts_[at(k)] = place;
+  }
 }
 
 CurvePlace DesignMechanism::contact(int element) const {
-  CurvePlace contact;
-  const ElementRecord& record = model_->elements[at(element)];
-  with_list(plan_->blocks, record.type,
-            [&](const auto& block) { contact = contact_of(block, contacts_, record.index); });
-  return contact;
+  const int k = plan_->element_contact[at(element)];
+  return k < 0 ? no_contact : contacts_[at(k)];
 }
 
 void DesignMechanism::rows(std::span<Taylor<DesignScalar>> out) const {

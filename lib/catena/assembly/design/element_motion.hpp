@@ -13,8 +13,7 @@ namespace catena::detail {
 
 using DesignSeries = Taylor<DesignScalar>;
 
-/// Elements that AdjointMechanism and MechanismTangents differentiate: not those that AdjointMechanism::why_not()
-/// refuses in a model that others use too.
+/// Elements that MechanismTangents differentiates: those of which frames and functions say all.
 template <class E>
 constexpr bool is_differentiated =
     !std::is_same_v<E, CustomConstraint<double>> && !std::is_same_v<E, CustomForce<double>> && !Joining<E> &&

@@ -69,7 +69,8 @@ class ConstraintSolver {
   const SparseVectors& left_out() const { return left_out_; }
   /// x = S^-1 x. On the constraints the solutions for all c span the left null space of Phi_q.
   void solve_rows(std::span<double> x, Counters& counters);
-  /// sqrt((S - C)_rr) of the last factorize(), by row: the size of a unit multiplier in the metric.
+  /// The root of the diagonal of S without the directions left out, of the last factorize(), by row: the size of a unit
+  /// multiplier in the metric.
   std::vector<double> row_sizes() const;
 
   /// Factors S at the given values of Phi_q (as many as it has entries, or more); they must stay where they are for the
@@ -90,11 +91,11 @@ class ConstraintSolver {
   /// Part of M qdd - Q + Phi_q^T lambda that the last solve_motion() left at massless coordinates, relative to the
   /// forces in it; 0 without such coordinates. Near 1: nothing that has mass determines their motion.
   double massless_residual() const { return massless_residual_; }
+  /// The coordinate where it was largest.
+  int worst_massless() const { return worst_massless_; }
   /// s / (s + r) of every massless coordinate, in the order of their numbers, or a somewhat larger value: estimated by
   /// a few solves with random loads. Overwrites the results of solve_motion().
   std::vector<double> massless_shares(Counters& counters);
-  /// The coordinate where it was largest.
-  int worst_massless() const { return worst_massless_; }
 
   /// The least x with Phi_q x + C lambda = b, refined until the residual is rounding, at most five times. Sizes: rows
   /// (b, lambda), coordinates (x).

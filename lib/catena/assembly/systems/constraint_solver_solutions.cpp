@@ -97,8 +97,7 @@ void ConstraintSolver::solve(std::span<const double> b, std::span<double> x, std
 void ConstraintSolver::least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda,
                                     Counters& counters) {
   std::copy(b.begin(), b.end(), lambda.begin());
-  std::copy(b.begin(), b.end(), scratch_.right_hand_side.begin());
-  solve_refined<double>(lambda, scratch_.right_hand_side, scratch_, counters);
+  solve_rows(lambda, counters);
   spread<double>(lambda, x);
 }
 

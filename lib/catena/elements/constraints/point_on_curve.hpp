@@ -54,11 +54,7 @@ struct PointOnCurve {
   CurvePlace place() const { return {.s_i = given_foot}; }
   /// Not regular where the distance has no proper minimum.
   void follow_contact(const Frame<double>& i, const Frame<double>& j, CurvePlace& place) const {
-    const Vec2<double> x = local(i, j, plain(s_j));
-    const auto towards = [&](const CurvePoint<double>& c) { return descent(c, x); };
-    double s = place.s_i;
-    place.is_regular = follow_minimum(curve, towards, s) || follow_minimum(curve, towards, s = curve.nearest(x));
-    place.s_i = place.is_regular ? s : curve.nearest(x);
+    place.is_regular = follow_foot(curve, local(i, j, plain(s_j)), place.s_i);
   }
   bool can_leave_curve() const { return curve.ends(); }
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const { return curve.use_at(a.contact->s_i); }
@@ -70,7 +66,7 @@ struct PointOnCurve {
     // The value itself is stationary in s.
     if (a.contact->is_regular && !std::is_same_v<T, double>) {
       const CurvePoint<T> c = curve.evaluate(s);
-      s = s - dot(c.p - x, c.d1) / T(descent(plain(c), plain(x)).bend);
+      s = s - dot(c.p - x, c.d1) / T(foot_descent(plain(c), plain(x)).bend);
     }
     const CurvePoint<T> c = curve.evaluate(s);
     out[0] = cross(c.d1, x - c.p) / norm(c.d1);
@@ -84,11 +80,6 @@ struct PointOnCurve {
   template <class T, class U>
   static Vec2<T> local(const Frame<T>& i, const Frame<T>& j, const Vec2<U>& point) {
     return i.to_local(j.point(point) - i.origin());
-  }
-  /// Of half the squared distance.
-  static Descent descent(const CurvePoint<double>& c, const Vec2<double>& x) {
-    const double size = squared_norm(c.d1);
-    return {dot(c.p - x, c.d1), size + dot(c.p - x, c.d2), size};
   }
 };
 

@@ -19,7 +19,7 @@ namespace catena {
 
 struct AnalysisContext;
 
-class AnalysisRows final : public RowObserver, public WatchesStages {
+class AnalysisRows final : public RowObserver {
  public:
   /// `run`: the first and the last instant. `columns` and `context` must outlive this object.
   AnalysisRows(const ColumnSet& columns, AnalysisContext& context, const Model& model, const Plan& plan,

@@ -73,15 +73,15 @@ DesignModels designs_of(const AnalysisContext& context, int last, std::optional<
   return context.models->designs(*context.task.table, seeds, parameters);
 }
 
-bool goes_back(AnalysisContext& context, std::string_view obstacle, bool own_curves) {
+bool goes_back(AnalysisContext& context, std::string_view obstacle, bool has_phases) {
   if (!context.design || context.design->rows || context.design->mode == GradientMode::forward) return false;
   std::string why(obstacle);
-  if (why.empty()) why = AdjointMechanism::why_not(*context.model, own_curves);
+  if (why.empty()) why = AdjointMechanism::why_not(*context.model, has_phases);
   if (!why.empty()) {
     context.forward_because = why;
     return false;
   }
-  context.goes_back = context.design->mode == GradientMode::adjoint || adjoint_is_cheaper(context, own_curves);
+  context.goes_back = context.design->mode == GradientMode::adjoint || adjoint_is_cheaper(context, has_phases);
   return context.goes_back;
 }
 

@@ -85,8 +85,8 @@ DesignModels designs_of(const AnalysisContext& context, int last = -1, std::opti
 
 /// Whether the gradients that the context's design request asks for are found by adjoints: where they can be and,
 /// unless they are asked for, where they are the cheaper way. `obstacle`: why this analysis has none, if so;
-/// `own_curves`: as AdjointMechanism::why_not().
-bool goes_back(AnalysisContext& context, std::string_view obstacle = {}, bool own_curves = false);
+/// `has_phases`: as AdjointMechanism::why_not().
+bool goes_back(AnalysisContext& context, std::string_view obstacle = {}, bool has_phases = false);
 
 using AnalysisFunction = void (*)(AnalysisContext& context, AnalysisResult& result);
 

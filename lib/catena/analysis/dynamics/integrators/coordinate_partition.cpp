@@ -177,7 +177,7 @@ bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::s
     position_residual_ = scaling_.row_norm(residual_);
     if (!std::isfinite(position_residual_)) return false;
     if (k == 0 && (!factorize() || ratio_ < unusable * largest_ratio_)) return false;
-    if (position_residual_ <= thresholds::position_rounding) break;
+    if (position_residual_ <= thresholds::few_roundings) break;
     if (k > 0 && position_residual_ > 0.5 * before &&
         ((before < good_enough && position_residual_ < 10 * good_enough) || residual_is_rounding(q)))
       break;

@@ -35,8 +35,8 @@ class CoordinatePartition {
   /// Solves for the dependent positions and velocities; false where Newton's method does not converge or the choice is
   /// unusable.
   bool solve(double t, Side side, std::span<double> q, std::span<double> qd);
-  /// Whether the choice serves on from the place of the last solve(), which the motion has reached.
-  bool serves() {
+  /// Takes note that the motion has reached the place of the last solve(), and says whether the choice serves on.
+  bool keeps_up() {
     largest_ratio_ = std::max(largest_ratio_, ratio_);
     return choices_ > 0 && ratio_ >= worse * largest_ratio_;
   }

@@ -11,6 +11,8 @@
 
 namespace catena {
 
+class StageWatcher;
+
 class Integrator {
  public:
   Integrator() = default;
@@ -40,6 +42,8 @@ class Integrator {
   virtual std::span<const double> accelerations() const = 0;
   /// How fast the mechanism moves, 1/s: see ErrorScale.
   virtual double rate() const = 0;
+  /// Shows the stages of its steps from now on, if they are those of stage_watcher.hpp; nullptr: to nothing.
+  virtual void show_stages_to(StageWatcher* watcher) { static_cast<void>(watcher); }
   /// Whether ends of steps lie on the constraints to rounding.
   virtual bool meets_constraints() const { return true; }
 

@@ -55,7 +55,7 @@ bool RungeKutta::start(double t, std::span<const double> y) {
 bool RungeKutta::follow_motion() {
   if (partitions()) {
     motion_.equations().evaluator().set_time(t_);
-    return partition_->serves() || partition_->choose(motion_.q(std::span<const double>(y_)));
+    return partition_->keeps_up() || partition_->choose(motion_.q(std::span<const double>(y_)));
   }
   if (projects()) return true;
   double wanted = scale_.rate();
@@ -117,8 +117,8 @@ void RungeKutta::observe_rates() {
                  motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
 }
 
-bool RungeKutta::shows_stages() const {
-  return watcher_ && tableau().order == 8 && projects() && !trials_.project_stages() && !partitions() &&
+bool RungeKutta::begin_showing() {
+  return watcher_ && tableau().order == 8 && projects() && !trials_.project_stages() &&
          watcher_->begin_stages(t_, t_new_, y_);
 }
 
@@ -131,7 +131,7 @@ bool RungeKutta::evaluate_stages(double h) {
     energy_.note_power(motion_, 0, y_);
   }
   ratios_.begin();
-  const bool shows = shows_stages();
+  const bool shows = begin_showing();
   for (std::size_t s = 1; s < static_cast<std::size_t>(table.stages); ++s) {
     stage_.combine(table.a[s], h, y_, y_stage_);
     // The last stages lie at the end exactly: a function of time may jump there.

@@ -91,7 +91,7 @@ class RungeKutta final : public Integrator {
   bool meets_constraints() const override { return options_.keeping != ConstraintKeeping::stabilisation; }
 
   /// Shows the stages of order 8 from now on, of steps that are projected at their ends alone; nullptr: to nobody.
-  void show_stages_to(StageWatcher* watcher) { watcher_ = watcher; }
+  void show_stages_to(StageWatcher* watcher) override { watcher_ = watcher; }
 
  private:
   enum class Trial { made, again, failed };
@@ -114,6 +114,7 @@ class RungeKutta final : public Integrator {
   bool partitions() const { return partition_ && !crossing_; }
   bool follow_motion();
   bool begin_projection();
+  bool begin_showing();
   bool evaluate_stages(double h);
   bool project_stage(double t, Side side);
   bool solve_dependent(double t, Side side, std::span<double> y) {
@@ -152,8 +153,6 @@ class RungeKutta final : public Integrator {
   void evaluate_interpolant(double t, std::span<double> y);
   StepEnds ends() const { return {t_ - t_before_, y_before_, y_, stage_[0], slope_}; }
   void work_by_ends(double s, std::span<double> y);
-
-  bool shows_stages() const;
 
   Motion motion_;
   StageWatcher* watcher_ = nullptr;

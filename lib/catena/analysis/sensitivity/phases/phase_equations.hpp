@@ -51,7 +51,6 @@ class PhaseEquations {
 
   /// These elements have no equations from now on, and places do this.
   void hold(const std::vector<int>& released, std::vector<ContactState> states);
-  const std::vector<ContactState>& states() const { return states_; }
   /// What place k does now, by these numbers of it, and what its forces follow from, at the mechanism's state.
   PlaceLaw law(const DesignPlace& place, std::size_t k) const;
   PlaceMotion motion(const DesignMechanism& mechanism, std::size_t k) const;
@@ -68,7 +67,6 @@ class PhaseEquations {
   /// The row of a place's gap, of its slide; -1: none.
   int gap_row(std::size_t place) const;
   int slide_row(std::size_t place) const;
-  bool holds_row(int row) const { return held_[static_cast<std::size_t>(row)] != 0; }
 
   /// Factors for the equations that hold, at this place.
   bool factorize(double t, Side side, std::span<const DesignScalar> q, const DesignMechanism& masses);
@@ -101,7 +99,6 @@ class PhaseEquations {
   std::span<const double> jacobian() const { return std::span(jacobian_).first(jacobian_.size() - 1); }
   const std::vector<int>& dependent_rows() const { return system_->dependent_rows(); }
   const Plan& plan() const { return evaluator_.plan(); }
-  const ContactModel& contacts() const { return contacts_; }
   Evaluator& evaluator() { return evaluator_; }
 
  private:

@@ -111,11 +111,13 @@ DesignScalar PhaseTranspose::known(const Term& term, const DesignPlace& place, c
 bool PhaseTranspose::find_terms(const Point& point) {
   terms_.clear();
   take_multipliers(point);
+  bool is_there = false;
   for (std::size_t k = 0; k < places_.size(); ++k) {
     const PlaceLaw law = equations_.law(places_[k], k);
     const bool compliant = law.point.kind == ContactKind::compliant;
     if (!law.state.closed || (!compliant && !law.slides())) continue;
-    const PlaceMotion motion = motion_at(point, k);
+    if (!std::exchange(is_there, true)) set_state(plain_, point);
+    const PlaceMotion motion = bare(equations_.motion(plain_, k));
     if (compliant) terms_.push_back(Term{law.gap_row, k, false, 0, motion});
     if (law.slides()) terms_.push_back(Term{law.slide_row, k, true, 0, motion});
   }
@@ -161,8 +163,10 @@ void PhaseTranspose::add_rows(std::span<const double> rows, std::span<double> ou
 }
 
 bool PhaseTranspose::weigh(std::span<const double> by_qdd, std::span<const double> by_lambda) {
-  w_ = by_qdd.empty() ? zero_loads_ : Vector(by_qdd.begin(), by_qdd.end());
-  mu_ = by_lambda.empty() ? zero_rows_ : Vector(by_lambda.begin(), by_lambda.end());
+  w_ = zero_loads_;
+  mu_ = zero_rows_;
+  std::copy(by_qdd.begin(), by_qdd.end(), w_.begin());
+  std::copy(by_lambda.begin(), by_lambda.end(), mu_.begin());
   const auto given = [&](int row) { return by_lambda.empty() ? 0 : by_lambda[at(row)]; };
   if (!solve(w_, mu_)) return false;
   std::vector<Term*> coupled;
@@ -219,7 +223,7 @@ void PhaseTranspose::add_by_state(const Point& point, std::span<double> by_q, st
 }
 
 PhaseTranspose::ByParameter PhaseTranspose::by_parameters(const Point& point, const PhaseGroup& group) {
-  group.mechanism.set_time(point.t, point.side);
+  if (group.reached.asks_mechanism()) group.mechanism.set_time(point.t, point.side);
   const AdjointWeights weights{.w = w_, .lambda = point.lambda, .bend = mu_};
   ByParameter sum = adjoint_.by_parameters(group.mechanism, group.reached, weights, point.qdd);
   const bool known_act = std::any_of(terms_.begin(), terms_.end(), [](const Term& term) { return term.nu != 0; });
@@ -254,7 +258,7 @@ bool PhaseTranspose::project_back(const Point& point, std::span<double> q, std::
 
 PhaseTranspose::ByParameter PhaseTranspose::rows_by_parameters(const Point& point, std::span<const double> values,
                                                                std::span<const double> rates, const PhaseGroup& group) {
-  group.mechanism.set_time(point.t, point.side);
+  if (group.reached.asks_mechanism()) group.mechanism.set_time(point.t, point.side);
   adjoint_.set_motion(equations_.evaluator(), point.qd, {}, point.side);
   return adjoint_.by_parameters(group.mechanism, group.reached, {.phi = values, .rate = rates}, {});
 }

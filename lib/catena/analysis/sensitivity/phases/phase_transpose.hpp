@@ -64,7 +64,7 @@ class PhaseTranspose {
   ByParameter by_parameters(const Point& point, const PhaseGroup& group);
 
   /// [q, qd]^ back through the projection at a point, after factorize(); `anchor` += what kept values of rows weigh,
-  /// `parameters` the weights for parameters().
+  /// `parameters` the weights of rows by their values and by their rates, for rows_by_parameters().
   bool project_back(const Point& point, std::span<double> q, std::span<double> qd, std::span<double> anchor,
                     std::span<Vector, 2> parameters);
   /// What rows weigh by their values and rates, by the parameters of a group, at the point of project_back().

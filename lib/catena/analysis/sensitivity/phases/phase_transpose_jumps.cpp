@@ -78,7 +78,7 @@ bool PhaseTranspose::jump_back(const Jump& jump, std::span<double> by_q, std::sp
 PhaseTranspose::ByParameter PhaseTranspose::jump_by_parameters(const Jump& jump, const PhaseGroup& group,
                                                                std::size_t number) {
   Evaluator& evaluator = equations_.evaluator();
-  group.mechanism.set_time(jump.before.t, Side::after);
+  if (group.reached.asks_mechanism()) group.mechanism.set_time(jump.before.t, Side::after);
   adjoint_.set_motion(evaluator, jump.after.qd, jump.after.qdd);
   const AdjointWeights weights{.w = w_, .lambda = jump.after.lambda, .rate = mu_, .forces = false};
   ByParameter sum = adjoint_.by_parameters(group.mechanism, group.reached, weights, jump.after.qdd);

@@ -91,7 +91,6 @@ bool PhasedDerivatives::start(double t, std::span<const double> q_values, std::s
   StartDerivatives start(open, given_start_);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     DesignMechanism mechanism(open, models_[k]);
-    mechanism.go_to_curve_places(open.curve_places());
     mechanism.lift_configuration(q_values, q(tracks_[k].end));
     for (std::size_t c = 0; c < n_; ++c) tracks_[k].end[n_ + c] = qd_values[c];
     if (!start.find(mechanism, groups()[k].count, q(tracks_[k].end), qd(tracks_[k].end)))

@@ -78,14 +78,7 @@ std::optional<std::vector<double>> PhasedDerivatives::rate_of_event(const Motion
   // A column is at the value of an event that comes together with another one, both found to rounding.
   if (!is_first && !(std::abs(value - event.value) <= thresholds::solved * std::max(std::abs(event.value), 1.0)))
     return {};
-  const auto column_at = [&](double t) -> std::optional<double> {
-    const std::optional<Snapshot> there = stretch.at(t);
-    if (!there) return {};
-    double column = 0;
-    event.column.evaluate(*there, {&column, 1});
-    return column;
-  };
-  const std::optional<double> by_time = rate_at_end(stretch, column_at);
+  const std::optional<double> by_time = rate_at_end(stretch, event.column);
   if (!by_time) return {};
   const double change = std::abs(*by_time) * (to_ - from_);
   // One that changes by less in the stretch stays at its value, and has no event there.
