@@ -4,7 +4,8 @@
 #   tests/run.sh           Release build, every test but the long ones (stress, fuzz, bench, browser)
 #   tests/run.sh --all     also: a build by clang with AddressSanitizer and UndefinedBehaviorSanitizer in which the tests
 #                          labelled quick run, and the format of the sources
-#   tests/run.sh --long    only the long tests, and the fuzzers of the readers: CATENA_FUZZ_SECONDS each, 30 by default.
+#   tests/run.sh --long    only the long tests, a build by clang file by file, in which every header and every warning
+#                          counts, and the fuzzers of the readers: CATENA_FUZZ_SECONDS each, 30 by default.
 #                          The long ones make some 140,000 random scenes, or CATENA_STRESS_CASES of each kind
 #
 # Installs what is missing (apps/setup.sh). A stage that fails does not keep the later ones from running; the exit code
@@ -68,6 +69,7 @@ sanitized_build() { build sanitize; }
 sanitized_tests() {
   ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1 run_ctest sanitize --label-regex '^quick$'
 }
+clang_build() { build clang; }
 fuzzers_build() { cmake --preset fuzz && cmake --build build/fuzz --parallel "$jobs" --target fuzzers; }
 fuzzers_run() {
   ctest --test-dir build/fuzz --timeout $((${CATENA_FUZZ_SECONDS:-30} + 120)) --no-tests=error --label-regex '^fuzz$'
@@ -81,6 +83,7 @@ stage "Debian packages" apps/setup.sh $packages
 if [[ "$mode" == --long ]]; then
   stage "Release build" release_build
   stage "long tests" long_tests
+  stage "build by clang, file by file" clang_build
   stage "fuzzers by clang" fuzzers_build
   stage "fuzzing" fuzzers_run
 else

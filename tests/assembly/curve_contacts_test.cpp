@@ -166,7 +166,7 @@ TEST(CurveContacts, TheOrderOfEvaluationsDoesNotMatter) {
   }
 }
 
-// The gap of a point to a curve against the nearest of many points of it, and of the flat face against all of them.
+// The gap of a point to a curve against the nearest of many points of it.
 TEST(CurveContacts, AreWhereTheCurvesAreNearest) {
   for (unsigned seed = 0; seed < seeds; ++seed) {
     RandomContacts scene(seed);

@@ -6,9 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "assembly/built_scene.hpp"
 #include "catena/assembly/evaluate.hpp"
-#include "catena/scene/building/build_model.hpp"
-#include "catena/scene/reading/scene_reader.hpp"
 
 namespace catena::testing {
 namespace {
@@ -33,13 +32,8 @@ constexpr const char* text = R"--({"catena": 1, "gravity": [0, -9],
 class LawStiffness : public ::testing::Test {
  protected:
   void SetUp() override {
-    Diagnostics diagnostics;
-    const auto scene = read_scene(SourceText("scene", text), diagnostics);
-    ASSERT_TRUE(scene) << diagnostics.text();
-    model = build_model<double>(*scene, std::span<const double>(), {}, diagnostics);
-    ASSERT_TRUE(diagnostics.ok()) << diagnostics.text();
-    evaluator = std::make_unique<Evaluator>(Plan::make(model), model);
-    evaluator->set_time(0.7);
+    evaluator = testing::evaluator_of(text, model);
+    ASSERT_TRUE(evaluator);
     n = static_cast<std::size_t>(evaluator->plan().coordinates());
     moving = static_cast<std::size_t>(3 * evaluator->plan().moving);
   }

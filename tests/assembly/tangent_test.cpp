@@ -12,9 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "assembly/built_scene.hpp"
 #include "catena/assembly/systems/kkt_matrix.hpp"
-#include "catena/scene/building/build_model.hpp"
-#include "catena/scene/reading/scene_reader.hpp"
 
 namespace catena::testing {
 namespace {
@@ -44,13 +43,8 @@ class TangentTest : public ::testing::Test {
   void build(const char* added) {
     std::string text = mechanism;
     text.replace(text.find("WITHOUT_ENERGY"), 14, added);
-    Diagnostics diagnostics;
-    const auto scene = read_scene(SourceText("scene", text), diagnostics);
-    ASSERT_TRUE(scene) << diagnostics.text();
-    model = build_model<double>(*scene, std::span<const double>(), {}, diagnostics);
-    ASSERT_TRUE(diagnostics.ok()) << diagnostics.text();
-    evaluator = std::make_unique<Evaluator>(Plan::make(model), model);
-    evaluator->set_time(0.7);
+    evaluator = testing::evaluator_of(text, model);
+    ASSERT_TRUE(evaluator);
     columns = static_cast<std::size_t>(evaluator->plan().columns);
     rows = static_cast<std::size_t>(evaluator->plan().rows);
   }

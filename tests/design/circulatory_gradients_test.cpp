@@ -86,13 +86,20 @@ std::string scene_of(const ZieglerColumn& column, const char* analysis = modes) 
          names + R"(], "of": {)" + analysis + "}}]}";
 }
 
+/// All but the load; g between these.
+ZieglerColumn random_column(RandomNumbers& random, double least_g, double most_g) {
+  const std::array<std::array<double, 2>, 6> range = {
+      {{0.5, 2}, {0.5, 3}, {0.5, 3}, {5, 30}, {5, 30}, {least_g, most_g}}};
+  ZieglerColumn column{};
+  for (std::size_t p = 0; p < range.size(); ++p) column[p] = random(range[p][0], range[p][1]);
+  return column;
+}
+
 TEST(CirculatoryGradients, OfZieglersColumn) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
-    const std::array<std::array<double, 2>, 6> range = {{{0.5, 2}, {0.5, 3}, {0.5, 3}, {5, 30}, {5, 30}, {0, 3}}};
-    ZieglerColumn column{};
-    for (std::size_t p = 0; p < range.size(); ++p) column[p] = random(range[p][0], range[p][1]);
+    ZieglerColumn column = random_column(random, 0, 3);
     column[6] = random(0.1, 0.6) * static_cast<double>(std::min(column[3], column[4]) / column[0]);
     const TextRun run = run_text(scene_of(column));
     ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
@@ -117,9 +124,7 @@ TEST(CirculatoryGradients, OfALoadOfDivergence) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
-    const std::array<std::array<double, 2>, 6> range = {{{0.5, 2}, {0.5, 3}, {0.5, 3}, {5, 30}, {5, 30}, {5, 30}}};
-    ZieglerColumn column{};
-    for (std::size_t p = 0; p < range.size(); ++p) column[p] = random(range[p][0], range[p][1]);
+    ZieglerColumn column = random_column(random, 5, 30);
     column[6] = 0.1L;
     const TextRun run = run_text(scene_of(column, buckling));
     ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
@@ -137,9 +142,7 @@ TEST(CirculatoryGradients, OfALoadOfFlutter) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
-    const std::array<std::array<double, 2>, 6> range = {{{0.5, 2}, {0.5, 3}, {0.5, 3}, {5, 30}, {5, 30}, {0, 1}}};
-    ZieglerColumn column{};
-    for (std::size_t p = 0; p < range.size(); ++p) column[p] = random(range[p][0], range[p][1]);
+    ZieglerColumn column = random_column(random, 0, 1);
     column[6] = 0.1L;
     const TextRun run = run_text(scene_of(column, flutter));
     ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
@@ -175,9 +178,7 @@ TEST(CirculatoryGradients, OfPairsThatFlutter) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
-    const std::array<std::array<double, 2>, 6> range = {{{0.5, 2}, {0.5, 3}, {0.5, 3}, {5, 30}, {5, 30}, {0, 1}}};
-    ZieglerColumn column{};
-    for (std::size_t p = 0; p < range.size(); ++p) column[p] = random(range[p][0], range[p][1]);
+    ZieglerColumn column = random_column(random, 0, 1);
     // As the scene has it, in double precision.
     column[6] = static_cast<double>(flutter_of(column)[0] * random(1.1, 1.5));
     const std::array<Long, 4> exact = pair_of(column);

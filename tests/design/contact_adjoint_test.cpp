@@ -40,13 +40,6 @@ std::string text_of_case(const Case& one) {
          R"(], "of": {"type": "dynamics", "tolerance": 1e-12, )" + one.run + R"(, "measures": {)" + measures + "}}}]}";
 }
 
-bool went_back(const TextRun& run) {
-  for (const NamedField& field : run.analysis().fields) {
-    if (field.name == "mode") return std::get<std::string>(field.value) == "adjoint";
-  }
-  return false;
-}
-
 /// Values and derivatives are those of the formulas to `tolerance`, and were found by the adjoint.
 void expect_case(const Case& one, double tolerance = 1e-9) {
   const TextRun run = run_text(text_of_case(one));

@@ -19,6 +19,8 @@ inline const MeasureResult& measure(const TextRun& run, const std::string& name)
   return missing;
 }
 
+inline bool went_back(const TextRun& run) { return field<std::string>(run, "mode") == "adjoint"; }
+
 inline double value(const TextRun& run, const std::string& name) {
   return measure(run, name).value.value_or(std::nan(""));
 }

@@ -168,19 +168,13 @@ std::vector<std::string> story(const TextRun& run) {
 /// How many derivatives were compared, and how many scenes were gone back over.
 int compared = 0, gone_back = 0;
 
-bool went_back(const TextRun& run) {
-  for (const NamedField& field : run.analysis().fields) {
-    if (field.name == "mode") return std::get<std::string>(field.value) == "adjoint";
-  }
-  return false;
-}
-
 std::string fault_of(const RandomScene& scene) {
   const TextRun run = run_text(text_of_scene(scene, scene.parameters, "forward"));
   if (!run.outcome.error_text.empty()) return run.outcome.error_text;
   if (!run.analysis().report.ok()) return {};  // a Painleve state, or the like: a motion that ends is none of ours
   const TextRun back = run_text(text_of_scene(scene, scene.parameters, "adjoint"));
   if (!back.outcome.error_text.empty()) return back.outcome.error_text;
+  if (!back.analysis().report.ok()) return "the run of the adjoint: " + back.analysis().report.message;
   gone_back += went_back(back);
   const std::vector<std::string> events = story(run);
   for (std::size_t p = 0; p < scene.parameters.size(); ++p) {
@@ -225,7 +219,7 @@ void expect_gradients(unsigned first, unsigned last, Make&& make) {
     RandomNumbers random(seed);
     return fault_of(make(random));
   });
-  EXPECT_GT(compared, 2 * static_cast<int>(last - first + 1));
+  EXPECT_GT(compared, 20 * static_cast<int>(last - first + 1));
   EXPECT_GT(2 * gone_back, static_cast<int>(last - first + 1));
 }
 

@@ -173,12 +173,15 @@ TEST(AdjointInScenes, GoesForwardWhereItMustAndSaysWhy) {
     text.replace(text.find("LAW"), 3, law);
     return run_text(text.replace(text.find("MORE"), 4, more));
   };
-  const std::array<std::array<std::string, 3>, 2> cases{{
+  const std::array<std::array<std::string, 3>, 3> cases{{
       {R"("=-k*b.angle")", "", "laws of state"},
       {R"("=k")",
        R"("events": [{"name": "then", "when": "b.angle", "value": "=w/5", "impulse": {"i": "b", "value": [0, "k"]}},
         {"name": "both", "when": "b.angle", "value": "=w/5", "impulse": {"i": "b", "value": ["k", 0]}}], )",
        "several events"},
+      {R"("=k")",
+       R"("events": [{"name": "on", "when": "b.angle", "value": "=w/5", "action": "engage", "element": "pin"}], )",
+       "begins to hold"},
   }};
   for (const auto& [law, more, why] : cases) {
     const TextRun run = with(law, more);

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # Counts the named constants of the analyses by class (constants.awk) and holds them to what is written here: a new
-# threshold has to take the place of another, or to be one of run/thresholds.hpp and run/margins.hpp. Each must have a
-# reason beside it.
+# threshold has to take the place of another, or to be one of run/thresholds.hpp if it means the same, not only where
+# it has the same value. Each must have a reason beside it.
 #
 #   constants.sh ROOT          counts and checks
 #   constants.sh ROOT --list   all of them, one a line
 set -euo pipefail
 root="$(cd "$1" && pwd)"
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
-most_thresholds=320
-most_bounds=165
+most_thresholds=495
+most_bounds=173
 most_unexplained=12
 
 cd "$root"
@@ -26,7 +26,7 @@ echo "$thresholds thresholds, $bounds bounds of work and size, $(count exact) ex
 
 status=0
 if ((thresholds > most_thresholds)); then
-  echo "more than $most_thresholds thresholds: take one of run/thresholds.hpp or run/margins.hpp, or derive it"
+  echo "more than $most_thresholds thresholds: take one of run/thresholds.hpp that means the same, or derive it"
   status=1
 fi
 if ((bounds > most_bounds)); then

@@ -39,6 +39,11 @@ class Balances {
     return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0);
   }
   Arm any_arm() { return static_cast<Arm>(uniform(0, static_cast<double>(Arm::kinds))); }
+  /// At an angle of up to `most` to either side.
+  void add_any_arm(double most) {
+    const Arm kind = any_arm();
+    add_arm(kind, uniform(-most, most));
+  }
 
   // A massless arm on a pin, a mass at its end: a particle, or a plate that a second bar keeps level. What holds it,
   // the spring or another mass, is short by this part.
@@ -101,7 +106,7 @@ inline void expect_to_stay(unsigned first, int count) {
     SCOPED_TRACE(seed);
     Balances scene(seed);
     const int arms = 1 + static_cast<int>(scene.uniform(0, 3));
-    for (int k = 0; k < arms; ++k) scene.add_arm(scene.any_arm(), scene.uniform(-3, 3));
+    for (int k = 0; k < arms; ++k) scene.add_any_arm(3);
     const int rod = scene.uniform(0, 1) < 0.3 ? scene.add_pendulum(scene.uniform(-2.5, 2.5)) : -1;
     const auto model = scene.model();
     Equilibrium analysis(model);
@@ -140,7 +145,7 @@ inline void expect_unstable_when_short(unsigned first, int count) {
     const double start = weak ? upright : -upright;
     // No parallelogram: upright and hanging its bars are in line, where it may fold another way.
     scene.add_arm(scene.uniform(0, 1) < 0.5 ? Arm::single : Arm::counterweight, start, weak ? 1e-6 : -1e-6);
-    if (beside) scene.add_arm(scene.any_arm(), scene.uniform(-1.4, 1.4));
+    if (beside) scene.add_any_arm(1.4);
     EquilibriumOptions options;
     options.accept = Accept::stationary;
     const EquilibriumReport there = Equilibrium(scene.model(), {}, options).solve();
@@ -168,7 +173,7 @@ inline void expect_a_pendulum_to_fall(unsigned first, int count) {
     SCOPED_TRACE(seed);
     Balances scene(seed);
     const int arms = 1 + static_cast<int>(scene.uniform(0, 3));
-    for (int k = 0; k < arms; ++k) scene.add_arm(scene.any_arm(), scene.uniform(-3, 3));
+    for (int k = 0; k < arms; ++k) scene.add_any_arm(3);
     const auto rod = static_cast<std::size_t>(scene.add_pendulum(std::numbers::pi));
     EquilibriumOptions options;
     options.accept = Accept::stationary;

@@ -210,5 +210,16 @@ TEST(ClaimedDigits, HoldOfBucklingLoads) {
 
 TEST(ClaimedDigits, HoldAtRest) { expect_claims("at rest", 40, 5, add_resting_digits); }
 
+// Steps of order 5 end with the state that their last stage was evaluated at: nothing is stiff there.
+TEST(ClaimedDigits, OfOrderFiveOnASpline) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"b": {"particle": true, "mass": 1,
+    "position": [-0.3, 0.1]}}, "constraints": [{"type": "point_on_curve", "i": "ground", "j": "b",
+    "curve": {"spline": {"points": [[-1, 0.2], [-0.3, 0.1], [0.3, -0.05], [0.8, 0.1], [2, 0.2]], "end": "natural"}}}], "outputs": ["b.x"],
+    "analyses": [{"type": "dynamics", "method": "rk5", "until": 1, "every": 0.5}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  ASSERT_FALSE(run.analysis().digits.empty());
+  for (const double digits : run.analysis().digits) EXPECT_GT(digits, 4);
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -2,6 +2,9 @@
 // none, say that none were asked for, and have the same rows to the last bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "catena/scene/describing/analysis_description.hpp"
 #include "scene/run_text.hpp"
 
@@ -69,7 +72,14 @@ TEST(DigitsOption, LeavesThemOutAndNothingElse) {
 TEST(DigitsOption, IsOfAnalysesThatTellThem) {
   int kinds = 0;
   for (const AnalysisDescription& analysis : analysis_descriptions()) {
-    for (const AnalysisKey& key : analysis.keys) kinds += key.name == "digits";
+    for (const AnalysisKey& key : analysis.keys) {
+      if (key.name != "digits") continue;
+      ++kinds;
+      const std::string type = "\"type\": \"" + std::string(analysis.type) + "\"";
+      EXPECT_TRUE(std::any_of(std::begin(analyses), std::end(analyses), [&](const std::string& text) {
+        return text.find(type) != std::string::npos;
+      })) << analysis.type;
+    }
   }
   EXPECT_EQ(kinds, 7);
   EXPECT_EQ(run_text(scene_with(R"({"type": "check", "digits": false})")).outcome.exit_code, 3);

@@ -11,7 +11,8 @@ namespace catena::testing {
 /// How digits are found: of one run, of two with an estimate of the error, or by a second run of these methods.
 enum class Runs { one, two, adams, baumgarte, partitioning };
 
-/// Adds the columns of one mechanism; how it went, in words. But for two, fixed steps vary as well, of one methods too.
+/// Adds the columns of one mechanism; how it went, in words. Fixed steps vary as well, except with `two`; with `one`
+/// the method too.
 inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs runs = Runs::two) {
   RandomScene random(seed, RandomScene::Forces::moving);
   random.set_moving();
@@ -47,10 +48,9 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
     for (const char* column : std::span(columns).first(runs != Runs::two ? 9 : 6))
       random.scene["outputs"].push_back("b" + std::to_string(b) + column);
   }
-  keep_scene(runs == Runs::one   ? "moving"
-             : runs == Runs::two ? "moving_twice"
-                                 : "moving_methods",
-             seed, random.scene.dump(1));
+  static const char* const kinds[] = {"moving", "moving_twice", "moving_adams", "moving_baumgarte",
+                                      "moving_partitioning"};
+  keep_scene(kinds[static_cast<std::size_t>(runs)], seed, random.scene.dump(1));
   const TextRun run = run_text(random.scene.dump());
   if (run.outcome.exit_code > 1) return "not valid: " + run.outcome.error_text;
   if (!run.analysis().report.ok()) return std::string(to_string(run.analysis().report.status));

@@ -131,7 +131,8 @@ class ManyAnalyses {
 };
 
 /// What differs in the first columns of two tables once one is in the units of the other, beside the largest of the
-/// kind of each column: places of all bodies together, angles together. Below `nothing` is the rounding of zeros.
+/// kind of each column: places of all bodies together, angles together. Below `nothing` is the rounding of
+/// zeros.
 inline std::string rows_apart(const ResultStorage& given, const ResultStorage& seen, std::size_t columns,
                               const Transformation& t, double allowed) {
   if (given.rows() != seen.rows() || given.columns().size() != seen.columns().size())
@@ -150,7 +151,7 @@ inline std::string rows_apart(const ResultStorage& given, const ResultStorage& s
     for (std::size_t r = 0; r < given.rows(); ++r) {
       const double a = given.at(r, c), b = seen.at(r, c) / factor;
       if (std::isnan(a) && std::isnan(b)) continue;
-      if (!(std::abs(a - b) <= allowed * std::max(largest[unit], nothing))) {
+      if (!(std::abs(a - b) <= allowed * largest[unit] + nothing)) {
         std::ostringstream text;
         text << given.columns()[c].name << " of row " << r << " is " << a << ", in other units " << b;
         return text.str();

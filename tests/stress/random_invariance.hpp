@@ -136,4 +136,15 @@ inline double part_not_compared(const std::map<std::string, int>& seen) {
   return count("ok") > 0 ? double(count("(another place)")) / count("ok") : 0;
 }
 
+/// Part of the cases with an answer in one of both runs alone.
+inline double part_answered_once(const std::map<std::string, int>& seen) {
+  int all = 0, once = 0;
+  for (const auto& [outcome, n] : seen) {
+    if (outcome.starts_with('(')) continue;
+    all += n;
+    if (outcome.find('|') != std::string::npos) once += n;
+  }
+  return all > 0 ? static_cast<double>(once) / all : 1;
+}
+
 }  // namespace catena::testing

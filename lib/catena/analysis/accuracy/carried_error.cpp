@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "catena/analysis/accuracy/row_terms.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -14,12 +13,14 @@ namespace {
 constexpr double reach = 1;
 // ... and beyond this many the method is not stable.
 constexpr double farthest = 1.9;
+// How far places are moved to see what that does, length scales or rad: rounding then takes ten digits off.
+constexpr double shift = 1e-6;
 // Part of the stiffness that is remembered from one evaluation to the next: an error turns away from stiff directions
 // while steps are short, and into them as soon as they are long.
 constexpr double remembered = 0.9;
 // An error, in length scales or rad, whose effect is not in proportion any more: it is followed no further, and taken
 // for one of which no column has a right digit.
-constexpr double doubtful = 0.03;
+constexpr double doubtful = 0.03, all_wrong = 1e6;
 // Evaluations times columns that are made whatever the run costs, and the part of the run's that are made beyond.
 constexpr double allowance = 10'000, part_of_run = 0.02;
 // Of an evaluation with the projections behind it, in evaluations.
@@ -123,10 +124,9 @@ void CarriedError::carry(const Integrator& integrator) {
   const double size = norm(error_);
   if (!std::isfinite(size)) lost_ = true;
   drowned_ = size > doubtful;
-  if (drowned_) std::fill(error_.begin(), error_.end(), 1 / thresholds::same_value);
+  if (drowned_) std::fill(error_.begin(), error_.end(), all_wrong);
   if (lost_ || drowned_ || !(size > 0)) return;
-  // So far, in length scales or rad, places are moved to see what that does: rounding then takes ten digits off.
-  const double s = thresholds::same_value / size;
+  const double s = shift / size;
   std::vector<double> beside(y_);
   for (std::size_t c = 0; c < moving_; ++c) {
     beside[c] += s * dq[c];

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "catena/analysis/balance/static_accuracy.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -19,6 +18,8 @@ constexpr int most_columns = 3000;
 // Of the rounding of a balance, which is a bound: with all of it claims were optimistic by 1 at most, and half of them
 // pessimistic by 92 and more, over 275 random mechanisms.
 constexpr double usual = 0.5;
+// An answer of the linear equations is used if it leaves no more than this of their right-hand sides.
+constexpr double solved = 1e-3;
 
 }  // namespace
 
@@ -69,9 +70,8 @@ bool EquilibriumAccuracy::answer(std::span<double> force, std::span<double> gap)
   if (size == 0) return true;
   for (double& f : force) f /= size;
   for (double& g : gap) g /= size;
-  // An answer of the linear equations is used if it leaves no more of their right-hand sides.
-  const StaticStep step = system.solve(force, gap, thresholds::slight * Disturbance::epsilon);
-  if (!(step.residual <= thresholds::slight)) return false;
+  const StaticStep step = system.solve(force, gap, solved * Disturbance::epsilon);
+  if (!(step.residual <= solved)) return false;
   for (std::size_t c = 0; c < change_.size(); ++c) change_[c] = size * step.change[c];
   for (std::size_t r = 0; r < gap.size(); ++r) change_lambda_[r] = size * step.lambda[r];
   return std::isfinite(system.change_norm(change_));

@@ -16,6 +16,7 @@ constexpr double least_claimed = 1.5;  // digits: larger errors have no effect i
 constexpr double cost_of_row = 3;      // evaluations of accelerations and factors
 constexpr double grown = 1.25;         // an error since the last row that was looked at, for another one
 constexpr double astray = 0.2;         // part of an error in every direction
+constexpr double moved = 1e-6;         // of places by a disturbance, length scales or rad; of time, radians of the rate
 constexpr double further = 1.25;       // rows until another one is kept, of those so far
 // 12492 columns of 492 random mechanisms (seeds 1 to 500 of stress/digits_test.cpp) were optimistic by 7.3 at most,
 // pessimistic by 81 at the median; those of two runs by 5.7 and 81.
@@ -250,8 +251,8 @@ void MotionAccuracy::examine(const Row& row) {
   const double size = carried_.norm(row.error);
   disturb(row, size);
   const double radians = disturb_time(row);
-  double s = thresholds::same_value / std::max(size, Disturbance::epsilon);
-  if (radians > 0) s = std::min(s, std::max(1.0, thresholds::same_value / radians));
+  double s = moved / std::max(size, Disturbance::epsilon);
+  if (radians > 0) s = std::min(s, std::max(1.0, moved / radians));
   largest_.assign(columns_.size(), 0.0);
   for (const double sign : {1.0, -1.0}) {
     q_ = row.q;

@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "catena/analysis/adjoint/phased_measures.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -85,8 +84,7 @@ bool PhasedMeasures::bends(const Passage& passage) const {
     change = std::max(change, std::abs(after - before));
     size = std::max({size, std::abs(before), std::abs(after)});
   }
-  // Accelerations that differ by less than this part of their size are the same on both sides of an instant.
-  return change > thresholds::negligible * size;
+  return change > no_jump_of_slopes * size;
 }
 
 // By what determines the instant.

@@ -2,8 +2,6 @@
 // lanes (batch/lane_equilibrium.hpp) keep alike: what they find is then the same.
 #pragma once
 
-#include "catena/analysis/run/thresholds.hpp"
-
 namespace catena::descent {
 
 /// Of one step, rad, unless the limit has doubled.
@@ -11,19 +9,18 @@ inline constexpr double largest_turn = 0.7;
 /// Shifts of K: the first relative to rounding of the largest stiffness or to force / extent, the last relative to the
 /// largest stiffness. Between them a soft support of a stiff part must be distinguished from no support. A search
 /// begins with this part of the shift of the step before.
-inline constexpr double first_of_rounding = thresholds::few_roundings, first_of_force = 1e-6, largest_shift = 1e6,
-                        part_of_last = 1.0 / 16;
+inline constexpr double first_of_rounding = 1e-15, first_of_force = 1e-6, largest_shift = 1e6, part_of_last = 1.0 / 16;
 /// Growth of the shift where the inertia is not that of a minimum.
 inline constexpr double stiffening = 32;
 inline constexpr double sufficient_decrease = 1e-4;
 /// The energy is a sum of large terms: a change below this part of them is rounding.
-inline constexpr double noise_part = thresholds::sum_rounding;
+inline constexpr double noise_part = 1e-14;
 /// A step shorter than this, length scales or rad, ends the search.
-inline constexpr double polishing_change = thresholds::same_value;
+inline constexpr double polishing_change = 1e-6;
 /// Constraints are met to this, in length scales or rad, between steps: by so many corrections with the same factors,
 /// each of which leaves no more than a part of the residual, and as many with new ones where these fail. A longer
 /// correction, length scales or rad, is none.
-inline constexpr double restored = thresholds::poorly_solved, remaining_part = 0.7, longest_correction = 10;
+inline constexpr double restored = 1e-10, remaining_part = 0.7, longest_correction = 10;
 inline constexpr int most_corrections = 12;
 
 }  // namespace catena::descent

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "catena/analysis/balance/force_sizes.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
+
+// A residual above this part of the loads changes the third digit of some force: not an equilibrium.
+constexpr double shown = 1e-3;
 
 // Sums over the terms of the residual, by columns.
 std::vector<double> sum_terms(const StaticSystem& system, std::span<const double> sizes,
@@ -115,8 +117,7 @@ StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambd
   }
   const bool loaded = result.loads > 0;
   if (!loaded) result.loads = result.forces;
-  // A larger residual changes the third digit of some force: not an equilibrium.
-  const bool shows = result.residual > std::max(thresholds::slight, tolerance) * result.loads;
+  const bool shows = result.residual > std::max(shown, tolerance) * result.loads;
   result.balanced = finite && !shows && result.residual <= tolerance * result.forces;
   if (result.balanced || !finite) return result;
   std::vector<double> floor = terms;

@@ -84,7 +84,7 @@ class StaticSystem {
   bool has_springs() const { return springs_.any(); }
 
   /// Changes below this cannot be told from rounding of the coordinates: length scales or rad.
-  double rounding_change() const { return thresholds::few_roundings * extent_ / length_; }
+  double rounding_change() const { return thresholds::position_rounding * extent_ / length_; }
 
   /// Residual forces below this may be rounding: a stiff spring's length is known to so many digits only, N.
   double rounding_force() const { return 1e-14 * matrix_.largest_stiffness() * extent_; }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "catena/analysis/balance/descent_rules.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
@@ -13,15 +12,25 @@ namespace {
 
 // As many steps as a single search makes.
 constexpr int most_steps = 200;
+// A row of which the rows before it leave less than this part: single searches begin to take it for one that follows
+// from others where factors lose all digits, at 1e-10 or so.
+constexpr double least_rank = 1e-6;
+// A pivot below this part of the stiffest may have the other sign in another order of operations: in plans of a few
+// dozen coordinates rounding is below 1e-13 of it, and regularised equations take 1e-10 of what rows resist.
+constexpr double doubtful_pivot = 1e-9;
 // A lane's numbers are those of a single search to rounding, where positions meet the constraints to 1e-10: decisions
 // nearer to their limits, relative to what is compared, are left to that.
-constexpr double doubtful_decrease = 1e-7;
+constexpr double doubtful_decrease = 1e-7, doubtful_noise = 0.3, doubtful_clip = 1e-9;
 // A step so short on a K that is positive is the last one, length scales or rad: Newton's method goes on from there,
 // and where its next step shows that K does not change over such a distance (lane_equilibrium_end.cpp) a single search
 // comes to the same place.
 constexpr double near_rest = 1e-4;
+// The slope of a step against the terms of its curvature, a hundred times what a single search takes for neutral.
+constexpr double neutral_terms = 1e-8;
 // N, N/m: far from where products are no longer represented, which single searches look for.
 constexpr double most_force = 1e60;
+// A mechanism that goes so many extents away, or turns so far, may not be held.
+constexpr double far_extents = 1e3, far_turn = 1e3;
 
 }  // namespace
 
@@ -96,9 +105,7 @@ void LaneEquilibrium::choose_shifts(LaneSet& lanes) {
       const double stiffest = system_.told(rest_stiffest, lane);
       const double loads = system_.told(rest_force, lane) / at_lane(lane).extent;
       if (system_.told(rest_positive, lane) == 1) pending &= ~(1U << lane);
-      // A smaller part of the stiffest may have the other sign in another order of operations: in plans of a few
-      // dozen coordinates rounding is below 1e-13 of it, and regularised equations take 1e-10 of what rows resist.
-      if (!(system_.told(rest_pivot, lane) > thresholds::negligible * std::max(stiffest, shift)))
+      if (!(system_.told(rest_pivot, lane) > doubtful_pivot * std::max(stiffest, shift)))
         return leave(lanes, lane, "whether a motion is resisted is a matter of rounding");
       if (!has(pending, lane)) return;
       shift = shift == 0 ? std::max({descent::first_of_rounding * stiffest, descent::first_of_force * loads,
@@ -126,8 +133,7 @@ LaneSet LaneEquilibrium::judge_steps(LaneSet& lanes, double tolerance) {
     }
     if (system_.told(rest_residual, lane) <= 10 * tolerance * system_.told(rest_force, lane))
       return leave(lanes, lane, "forces balance, but a step away from there changes its place");
-    // The slope of a step against the terms of its curvature, a hundred times what a single search takes for neutral.
-    if (shift == 0 && -slope <= thresholds::half_the_digits * system_.told(rest_terms, lane))
+    if (shift == 0 && -slope <= neutral_terms * system_.told(rest_terms, lane))
       leave(lanes, lane, "a motion is resisted by rounding alone");
   });
   return last;
@@ -150,7 +156,7 @@ void LaneEquilibrium::judge_energies(LaneSet& lanes, LaneSet& working, LaneSet r
       const double noise = descent::noise_part * (own.energy_size + system_.told(rest_force, lane) * own.extent);
       const double then = system_.told(rest_energy, lane) + system_.missed(system_.next_lambda, lane);
       const double beyond = then - (own.energy + decrease + noise);
-      if (!(std::abs(beyond) > thresholds::clearly_less * noise + doubtful_decrease * std::abs(decrease)))
+      if (!(std::abs(beyond) > doubtful_noise * noise + doubtful_decrease * std::abs(decrease)))
         return leave(lanes, lane, "whether a step lowers the energy enough is a matter of rounding");
       if (beyond < 0) {
         own.energy = then;
@@ -176,8 +182,7 @@ void LaneEquilibrium::search(LaneSet& lanes) {
     const double limit = std::min(own.reach * descent::largest_turn / turn, own.reach * own.extent / travel);
     own.is_clipped = limit < 1;
     own.factor = std::min(1.0, limit);
-    if (std::abs(limit - 1) <= thresholds::negligible)
-      leave(lanes, lane, "whether a step is too long is a matter of rounding");
+    if (std::abs(limit - 1) <= doubtful_clip) leave(lanes, lane, "whether a step is too long is a matter of rounding");
   });
   for (LaneSet working = lanes; working != 0;) {
     go(working, false);
@@ -189,8 +194,7 @@ void LaneEquilibrium::search(LaneSet& lanes) {
     for (int r = 0; r < system_.rows(); ++r) system_.lambda[r][lane] = system_.next_lambda[r][lane];
     for (int c = 0; c < system_.columns(); ++c) {
       const double moved = std::abs(system_.q[c][lane] - start_[c][lane]);
-      // A mechanism that goes so many extents away, or turns so far (rad), may not be held.
-      if (!(moved <= (c % 3 == 2 ? 1 : at_lane(lane).extent) / thresholds::slight))
+      if (!(moved <= (c % 3 == 2 ? far_turn : far_extents * at_lane(lane).extent)))
         return leave(lanes, lane, "it goes far from its start");
     }
   });
@@ -204,9 +208,7 @@ LaneSet LaneEquilibrium::find(LaneSet lanes, double tolerance) {
     system_.weigh();
     system_.curve();
     for_each_lane(lanes, [&](int lane) {
-      // A row of which the rows before it leave less: single searches begin to take it for one that follows from
-      // others where factors lose all digits, at 1e-10 or so.
-      if (!(system_.told(rest_rank, lane) > thresholds::same_value))
+      if (!(system_.told(rest_rank, lane) > least_rank))
         return leave(lanes, lane, "its constraints come near to depending on each other");
       if (!(std::max(system_.told(rest_stiffest, lane), system_.told(rest_load, lane)) < most_force))
         leave(lanes, lane, "a force or a stiffness is very large");

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "catena/analysis/batch/lane_equilibrium.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
@@ -15,7 +14,9 @@ constexpr double least_softest = 2e-6;
 // one may have, which shows K to be the same to that part; what is no longer than rounding leaves where motions are
 // soft.
 constexpr int last_steps = 6;
-constexpr double next_part = 0.05;
+constexpr double next_part = 0.05, not_shorter = thresholds::least_gain, rounded_step = 1e-9;
+// A residual above this part of the loads counts as a force (balance/static_accuracy.cpp).
+constexpr double shown = 1e-3;
 
 }  // namespace
 
@@ -36,7 +37,7 @@ LaneSet LaneEquilibrium::settle(LaneSet& lanes) {
         return leave(lanes, lane, "it leaves the place at which it came to rest");
       for (int r = 0; r < system_.rows(); ++r) system_.lambda[r][lane] = system_.next_lambda[r][lane];
       go(1U << lane, true);
-      const bool is_rounded = step > thresholds::least_gain * before && step <= thresholds::negligible;
+      const bool is_rounded = step > not_shorter * before && step <= rounded_step;
       if (step <= system_.rounding(lane) || is_rounded) {
         going &= ~(1U << lane);
       } else if (!(step <= next_part * before)) {
@@ -63,8 +64,7 @@ void LaneEquilibrium::check(LaneSet& lanes, double tolerance) {
     const double force = system_.told(rest_force, lane), dead = system_.told(rest_dead, lane);
     const double residual = system_.told(rest_residual, lane);
     const double stiffest = std::max(system_.told(rest_stiffest, lane), force / system_.length(lane));
-    // A larger residual counts as a force (balance/static_accuracy.cpp).
-    if (!(residual <= tolerance * force) || (dead > 0 && !(residual <= thresholds::slight * dead)))
+    if (!(residual <= tolerance * force) || (dead > 0 && !(residual <= shown * dead)))
       return leave(lanes, lane, "its forces balance to the rounding of stiff springs alone");
     if (!(system_.told(rest_gap, lane) <= tolerance)) return leave(lanes, lane, "its constraints do not hold");
     if (system_.columns() > system_.rows() && !(system_.told(rest_softest, lane) >= least_softest * stiffest))

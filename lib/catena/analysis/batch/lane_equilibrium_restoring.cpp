@@ -4,9 +4,16 @@
 
 #include "catena/analysis/balance/descent_rules.hpp"
 #include "catena/analysis/batch/lane_equilibrium.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
+namespace {
+
+// A residual as near to the limit, relative to it: single searches solve for corrections with constraints that yield by
+// 1e-10 (KktMatrix), which moves the residual by parts of that size.
+constexpr double doubtful_part = 1e-6;
+
+}  // namespace
+
 bool LaneEquilibrium::is_restored(int lane) const {
   return system_.told(rest_gap, lane) <= std::max(descent::restored, 10 * system_.rounding(lane));
 }
@@ -35,9 +42,7 @@ LaneSet LaneEquilibrium::correct_all(LaneSet& lanes, LaneSet going, bool anew) {
       double& before = at_lane(lane).before;
       const double now = system_.told(rest_gap, lane), limit = descent::remaining_part * before;
       if (is_restored(lane)) return;
-      // As near to the limit, relative to it: single searches solve for corrections with constraints that yield by
-      // 1e-10 (KktMatrix), which moves the residual by parts of that size.
-      if (std::abs(now - limit) <= thresholds::same_value * limit)
+      if (std::abs(now - limit) <= doubtful_part * limit)
         return leave(lanes, lane, "whether its constraints are met soon enough is a matter of rounding");
       if (!(now <= limit)) lost |= 1U << lane;
       before = now;

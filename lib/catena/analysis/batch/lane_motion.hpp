@@ -14,13 +14,12 @@
 #include <vector>
 
 #include "catena/analysis/batch/lane_solver.hpp"
-#include "catena/analysis/run/margins.hpp"
 
 namespace catena {
 
 // Below this part of its largest value, or of 1 in rad and length scales, a determinant leaves positions, which meet
 // the equations to 1e-15, with an error of 1e-12.
-inline constexpr double least_margin = thresholds::slight;
+inline constexpr double least_margin = 1e-3;
 
 class LaneMotion {
  public:

@@ -14,14 +14,17 @@
 #include <limits>
 
 #include "catena/analysis/contact/contact_switch.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
+// Of the kinetic energy before an impact: rounding of work.
+constexpr double energy_rounding = 1e-12;
 // Halvings of restitution before it is left out: what is left then is far below any speed of rest.
 constexpr int most_halvings = 40;
+// Of the speed of the motion: rounding that is left of the rates of bodies at rest.
+constexpr double rest_part = 1e-15;
 
 }  // namespace
 
@@ -108,7 +111,7 @@ void ContactSwitch::set_up(ContactProblem& problem, double restitution_part, std
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const ContactProblem::Place& place = problem.place[a];
     // Bodies that came to rest have rates that are rounding of those of the motion.
-    const double speed = part_of_speed(active_[a], thresholds::few_roundings / ContactProblem::rounding_of_sums);
+    const double speed = part_of_speed(active_[a], rest_part / ContactProblem::rounding_of_sums);
     if (place.has_normal) problem.b_terms[2 * a] = std::max(size_of_product(gap_[active_[a]], qd), speed);
     if (place.has_friction) problem.b_terms[2 * a + 1] = std::max(size_of_product(slide_[active_[a]], qd), speed);
   }
@@ -192,7 +195,7 @@ bool ContactSwitch::bounce_without_gain(double t, const std::vector<std::size_t>
     std::copy(before.begin(), before.end(), qd.begin());
     p_ = p_before;
   };
-  const auto gains = [&](double work) { return work > thresholds::solved * energy; };
+  const auto gains = [&](double work) { return work > energy_rounding * energy; };
   double work = 0;
   if (!bounce(1, qd, work)) return false;
   if (!gains(work)) return true;

@@ -23,7 +23,6 @@
 #include "catena/analysis/contact/contact_points.hpp"
 #include "catena/analysis/contact/elastic_grips.hpp"
 #include "catena/analysis/motion/state_loads.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/columns/snapshot.hpp"
 
@@ -31,7 +30,7 @@ namespace catena {
 
 /// Of the largest speed so far, divided by the length scale for rates of angles: what cannot be told from rest after an
 /// impact or at the end of a slide.
-constexpr double no_speed = thresholds::negligible;
+constexpr double no_speed = 1e-9;
 
 class ContactLoads final : public StateLoads {
  public:

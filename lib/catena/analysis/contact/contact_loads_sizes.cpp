@@ -9,10 +9,17 @@
 
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
+namespace {
+
+// Newton's method on forces that are nearly linear in each other: without joints one step is exact, with joints the
+// error is squared in every step.
+constexpr int most_iterations = 30;
+
+}  // namespace
+
 /// f + mu sigma N(lambda_0 + B f) = 0, with the memory for its solution.
 struct ContactLoads::Sizes {
   Eigen::VectorXd f, residual, terms, step;
@@ -168,7 +175,7 @@ void ContactLoads::find_slope() {
 bool ContactLoads::find_sizes(std::span<const double> lambda) {
   Sizes& s = *sizes_;
   s.f.setZero();
-  for (int iteration = 0; iteration <= thresholds::most_newton_iterations; ++iteration) {
+  for (int iteration = 0; iteration <= most_iterations; ++iteration) {
     find_residual(lambda);
     if (s.is_solved() && iteration > 0) return true;
     find_slope();

@@ -4,10 +4,20 @@
 #include <cmath>
 
 #include "catena/analysis/contact/contact_loads.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
+namespace {
+
+// Of the rates that a slip is the sum of, and at which tensions begin: rounding.
+constexpr double rounding = 1e-12;
+// Of the length of a rope: some ten roundings of lengths that are sums.
+constexpr double length_rounding = 1e-14;
+// Of tensions: that of angles of contact, as bodies are on their constraints.
+constexpr double tension_rounding = 1e-10;
+
+}  // namespace
+
 ElasticGrips::ElasticGrips(const std::vector<ContactPoint>& points, std::shared_ptr<const RopePlaces> rope)
     : points_(points), rope_(std::move(rope)) {
   const std::size_t parts = rope_->grips.size() + 1;
@@ -79,10 +89,8 @@ void ElasticGrips::look(const Evaluator& evaluator, std::span<const double> qd,
 // More by what rounding of lengths makes of tensions: a grip that has come to rest begins at its limit.
 double ElasticGrips::margin(std::size_t grip) const {
   const double most = std::exp(exponent_[grip + 1].f), before = T_[grip].f, behind = T_[grip + 1].f;
-  const double doubt =
-      thresholds::sum_rounding * rope_->length * (1 / rope_->yields[grip] + 1 / rope_->yields[grip + 1]);
-  return std::min(before * most - behind, behind * most - before) + thresholds::poorly_solved * (before + behind) +
-         doubt;
+  const double doubt = length_rounding * rope_->length * (1 / rope_->yields[grip] + 1 / rope_->yields[grip + 1]);
+  return std::min(before * most - behind, behind * most - before) + tension_rounding * (before + behind) + doubt;
 }
 
 // Whether a grip that sticks cannot: at zero tension, by how these begin.
@@ -91,7 +99,7 @@ bool ElasticGrips::slips(std::size_t grip) const {
   const Rate before = T_[grip], behind = T_[grip + 1];
   if (before.f > 0 || behind.f > 0) return margin(grip) < 0;
   const double sum = std::abs(before.d) + std::abs(behind.d);
-  return std::min(before.d * most - behind.d, behind.d * most - before.d) < -thresholds::solved * sum;
+  return std::min(before.d * most - behind.d, behind.d * most - before.d) < -rounding * sum;
 }
 
 void ElasticGrips::settle(const Evaluator& evaluator, std::span<const double> qd, std::vector<ContactState>& states) {
@@ -107,7 +115,7 @@ void ElasticGrips::settle(const Evaluator& evaluator, std::span<const double> qd
         const bool forward = T_[k + 1].f != T_[k].f ? T_[k + 1].f > T_[k].f : T_[k + 1].d > T_[k].d;
         state.direction = forward ? -1 : 1;
         changed = true;
-      } else if (state.direction * slip(k) < -thresholds::solved * (std::abs(u_[k + 1].d) + std::abs(S_[k + 1].d))) {
+      } else if (state.direction * slip(k) < -rounding * (std::abs(u_[k + 1].d) + std::abs(S_[k + 1].d))) {
         state.direction = 0;
         state.held = held(k);
         changed = true;

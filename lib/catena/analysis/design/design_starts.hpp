@@ -9,12 +9,11 @@
 #include <optional>
 
 #include "catena/analysis/design/design_search.hpp"
-#include "catena/analysis/run/margins.hpp"
 
 namespace catena {
 
 // Of the tolerance, the relative gain of a step that ends a method.
-inline constexpr double part_of_gain = thresholds::slight;
+inline constexpr double part_of_gain = 1e-3;
 
 /// What the method is asked for after so many designs.
 MinimiserOptions minimiser_options(const DesignOptions& options, int evaluations, std::size_t variables);

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "catena/analysis/design/design_starts.hpp"
-#include "catena/analysis/run/margins.hpp"
 
 namespace catena {
 namespace {
@@ -19,6 +18,8 @@ constexpr double roots_of_gain = 30;
 // falls by this part at least of what the gradient promises.
 constexpr double short_steps[] = {1e-3, 1e-5};
 constexpr double kept_promise = 0.1;
+// A design that is nearer to the bottom of its parabola is there: half the digits of a double.
+constexpr double rounding_of_place = 1e-8;
 // How far the design is from which one sees whether variables change the objective at all, in parts of their ranges.
 constexpr double beside = 0.25;
 // How often a method that ends where it could go downhill is begun anew from there.
@@ -73,8 +74,7 @@ bool goes_downhill(const DesignProblem& problem, const DesignOptions& options, D
     }
     // The bottom of the parabola through it, where the objective is one.
     const double bend = 2 * (*change + slope * step) / (step * step), distance = slope / bend;
-    // A design that is nearer to the bottom of its parabola is there: half the digits of a double.
-    if (distance <= std::max(allowed, thresholds::half_the_digits)) {
+    if (distance <= std::max(allowed, rounding_of_place)) {
       outcome.optimality = std::min(*outcome.optimality, distance);
       return false;
     }

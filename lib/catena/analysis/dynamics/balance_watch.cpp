@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "catena/analysis/run/thresholds.hpp"
@@ -16,6 +17,10 @@ namespace {
 // tolerances down to 1e-10 and 19 at 1e-11, where it comes with errors of thirty times the tolerance. Rounding near
 // flat positions may exceed this at 1e-12, too, and is reported.
 constexpr double permitted = 10;
+// Of the potential energy, whose parts may cancel; steps add up to some hundred roundings.
+constexpr double rounding = thresholds::carried_rounding;
+// Of loads that constraints balance: sums of a dozen terms.
+constexpr double rounding_of_balance = 16 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -72,7 +77,7 @@ Report BalanceWatch::check(double t, std::span<const double> loads) const {
   const double energy = this->energy();
   const double size = std::max({weight_, std::abs(least_potential_), std::abs(largest_potential_), std::abs(initial_)});
   const double drift = drifts_ ? tolerance_ * weight_ : 0;
-  const double allowed = permitted * tolerance_ * energy + drift + thresholds::carried_rounding * size;
+  const double allowed = permitted * tolerance_ * energy + drift + rounding * size;
   if (std::abs(missing_) <= allowed) return report;
   // Where nothing moves and nothing weighs, the work of loads is all there is.
   double most = 0, all = 0, free = 0;
@@ -82,8 +87,7 @@ Report BalanceWatch::check(double t, std::span<const double> loads) const {
     all += std::abs(loads[c]) / (turns ? length_ : 1);
     free += std::abs(loads[c]) * inverse_mass_[c] * (turns ? length_ : 1);
   }
-  if (std::abs(missing_) <=
-      allowed + thresholds::carried_rounding * most + thresholds::sum_rounding * free * all * squared_times_)
+  if (std::abs(missing_) <= allowed + rounding * most + rounding_of_balance * free * all * squared_times_)
     return report;
   report.status = Status::not_converged;
   report.message = fmt::format(

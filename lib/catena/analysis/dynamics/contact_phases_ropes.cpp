@@ -5,11 +5,17 @@
 #include "catena/analysis/contact/elastic_grips.hpp"
 #include "catena/analysis/dynamics/contact_phases.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/assembly/rope_ways.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
+namespace {
+
+// Of the exponent that a grip uses up which others keep from slipping, it may be at its limit: that of angles.
+constexpr double tied_rounding = 1e-9;
+
+}  // namespace
+
 // The grips of ropes as these lie at the evaluator's configuration.
 void ContactPhases::lay_grips(const Evaluator& evaluator) {
   catena::lay_grips(contacts_, ropes_->routes(), [&](const RopeRoute& route) { return frames_of(evaluator, route); });
@@ -159,8 +165,7 @@ void ContactPhases::add_grip_transitions(std::size_t k, const Dynamics& dynamics
   }
   if (!point.has_friction() || !state.closed) return;
   if (state.tied) {
-    // Of the exponent that a grip uses up which others keep from slipping, it may be at its limit: that of angles.
-    watch([lines = point.lines, used = std::abs(state.held) * (1 - thresholds::negligible)](
+    watch([lines = point.lines, used = std::abs(state.held) * (1 - tied_rounding)](
               const Snapshot& s) { return lines->exponent(s.evaluator, {}).f - used; },
           1, PhaseEnd::slide);
     return;

@@ -5,9 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/thresholds.hpp"
-
 namespace catena {
+namespace {
+
+// A constraint is engaged where it holds already, to this part of the length scale, or rad: events are located to
+// rounding on motions that may be known to some eight digits.
+constexpr double misfit = 1e-6;
+
+}  // namespace
+
 std::vector<double> residuals_of(Evaluator& evaluator, std::span<const double> q, int element) {
   const Plan& plan = evaluator.plan();
   evaluator.set_configuration(q);
@@ -26,9 +32,7 @@ Report check_fit(Evaluator& evaluator, std::span<const double> q, int element) {
   auto row = static_cast<std::size_t>(std::max(0, plan.element_row[static_cast<std::size_t>(element)]));
   for (const double phi : residuals_of(evaluator, q, element)) {
     const bool angle = plan.row_is_angle[row++] != 0;
-    // A constraint is engaged where it holds already: events are located to rounding on motions that may be known to
-    // some eight digits.
-    if (std::abs(phi) <= thresholds::same_value * (angle ? 1 : length)) continue;
+    if (std::abs(phi) <= misfit * (angle ? 1 : length)) continue;
     report.status = Status::inconsistent;
     report.message = fmt::format(
         "\"{}\" cannot be engaged at t = {:.12g} s: it misses by {:.3g} {}; an event must happen where it holds",

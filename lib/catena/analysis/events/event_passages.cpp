@@ -9,6 +9,9 @@
 namespace catena {
 namespace {
 
+// Of the time between two samples: nearer to the first one nothing is looked for.
+constexpr double smallest_part = 1e-13;
+
 /// Where the parabola through three points has its vertex, and its value there, if that lies between them.
 struct Vertex {
   double t = 0, value = 0;
@@ -39,8 +42,7 @@ double EventWatch::locate(std::size_t k, double before, double after, const Stat
   double a = before, b = after, fa = value_at(k, a, state_at), fb = value_at(k, b, state_at);
   // After an event at the start itself the column may have gone beyond and be on its way back.
   for (double part = 0.5; !(fa * side_[k] > 0); part /= 2) {
-    // Nearer to the first sample, in parts of the time between two, nothing is looked for.
-    if (part < thresholds::carried_rounding) return before;
+    if (part < smallest_part) return before;
     a = before + (after - before) * part;
     fa = watched(k, a, state_at);
   }

@@ -15,8 +15,6 @@
 #include <span>
 #include <vector>
 
-#include "catena/analysis/run/margins.hpp"
-
 namespace catena {
 
 class EventSamples {
@@ -70,8 +68,8 @@ class EventSamples {
   static constexpr double foreseen = 0.01;
   // A column stays on its side where the polynomial is missed by less than this part of its distance from zero: between
   // samples it is missed by not much more than at them.
-  static constexpr double out_of_reach = thresholds::clearly_less;
-  static constexpr double above_rounding = 1 / thresholds::slight;
+  static constexpr double out_of_reach = 0.3;
+  static constexpr double above_rounding = 1e3;
   // Each takes some two hundred samples to be found.
   static constexpr int most_kinks = 8;
 

@@ -4,14 +4,16 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
-
 namespace catena {
 namespace {
 
-// The size of what may be nothing but rounding, in units of its column: distances of some 1e-14 count as zero then.
-constexpr double least_size = thresholds::sum_rounding / thresholds::carried_rounding;
+// A distance from the value below this part of the column's size counts as zero.
+constexpr double rounding = 1e-13;
+// The size of what may be nothing but rounding, in units of its column: distances below 1e-14 count as zero then.
+constexpr double least_size = 0.1;
+// Of the time between two samples: columns that reach their values within rounding at one instant do so this near to
+// it.
+constexpr double one_instant = 1e-3;
 
 }  // namespace
 
@@ -40,10 +42,7 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
   angles_.resize(static_cast<std::size_t>(plan.moving));
 }
 
-double EventWatch::tiny(std::size_t k) const {
-  // A distance from the value below this part of the column's size counts as zero.
-  return thresholds::carried_rounding * std::max(largest_[k], std::abs(target(k)));
-}
+double EventWatch::tiny(std::size_t k) const { return rounding * std::max(largest_[k], std::abs(target(k))); }
 
 int EventWatch::side(std::size_t k, double g) const {
   const double none = tiny(k);
@@ -98,9 +97,7 @@ FoundEvent EventWatch::first_found(const StateAt& state_at) {
   FoundEvent first = found_.back();
   found_.pop_back();
   const auto is_listed = [&](const FoundEvent& found) { return found.event < static_cast<int>(events_.size()); };
-  // Columns that reach their values within rounding at one instant do so this near to it, in parts of the time
-  // between two samples.
-  const double near = first.t + thresholds::slight * (times_[2] - times_[1]);
+  const double near = first.t + one_instant * (times_[2] - times_[1]);
   std::vector<FoundEvent> later;
   const bool alone = found_.empty() || found_.back().t > near;
   const std::optional<Snapshot> state = alone ? std::nullopt : state_at(first.t);

@@ -4,8 +4,6 @@
 #include <iterator>
 #include <limits>
 
-#include "catena/analysis/run/margins.hpp"
-
 namespace catena {
 namespace {
 
@@ -13,6 +11,7 @@ namespace {
 constexpr int least_law_halvings = 5;
 // A jump of a law is enclosed to a thousandth of the run; the error of the step that meets it does the rest.
 constexpr int most_law_halvings = 10;
+constexpr double foreseen = 1e-3;
 constexpr double stretches_in_a_step = 4;
 
 bool reads_time(const CompiledLaw<double>& law) {
@@ -61,7 +60,7 @@ bool LawStretches::is_foretold(Evaluator& evaluator, std::span<const double> qd,
   for (int n = 0; n <= EventSamples::parts; ++n)
     sample(evaluator, qd, EventSamples::instant(from, to, n), taken_.at(n));
   for (std::size_t k = 0; k < laws_.size(); ++k) {
-    if (taken_.miss(k) > thresholds::slight * ranges_[k]) return false;
+    if (taken_.miss(k) > foreseen * ranges_[k]) return false;
   }
   return true;
 }

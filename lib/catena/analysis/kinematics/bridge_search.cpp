@@ -4,11 +4,19 @@
 #include <cmath>
 #include <numeric>
 
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
+namespace {
+
+// A pivot whose least size is below this part of its size at the ends vanishes.
+constexpr double vanishing = 1e-6;
+// Drivers slower than the first part of their speed at the ends of the bridge may rest nearby; they rest if less than
+// the second part is left.
+constexpr double slow = 1e-3, resting = 1e-6;
+
+}  // namespace
+
 // False where the matrix is singular to the last digit.
 bool BridgeSearch::margins_at(double t, std::vector<BlockMargin>& margins) {
   evaluator_.set_time(t);
@@ -111,9 +119,7 @@ std::vector<double> BridgeSearch::singular_instants() {
       const double ends =
           std::max(std::abs(margins.front()[block].determinant), std::abs(margins.back()[block].determinant));
       const double t = refine_instant(block, times[place - 1], times[place + 1]);
-      // A pivot whose least size is below this part of its size at the ends vanishes.
-      if (!margins_at(t, before) || std::abs(before[block].determinant) < thresholds::same_value * ends)
-        instants.push_back(t);
+      if (!margins_at(t, before) || std::abs(before[block].determinant) < vanishing * ends) instants.push_back(t);
     }
   }
   std::sort(instants.begin(), instants.end());
@@ -132,8 +138,7 @@ bool BridgeSearch::find_rest(double& t) {
     return std::sqrt(std::inner_product(out.begin(), out.end(), out.begin(), 0.0));
   };
   const double most = std::max(nu_at(to_, nu), nu_at(from_, reference));
-  // Drivers slower than this part of their speed at the ends of the bridge may rest nearby.
-  if (nu_at(t, nu) > thresholds::slight * most) return false;
+  if (nu_at(t, nu) > slow * most) return false;
   const auto along = [&](double instant) {
     nu_at(instant, nu);
     return std::inner_product(nu.begin(), nu.end(), reference.begin(), 0.0);
@@ -153,8 +158,7 @@ bool BridgeSearch::find_rest(double& t) {
     }
     rest = (a + b) / 2;
   }
-  if (nu_at(rest, nu) > thresholds::same_value * most || std::abs(rest - t) > 0.05 * std::abs(to_ - from_))
-    return false;
+  if (nu_at(rest, nu) > resting * most || std::abs(rest - t) > 0.05 * std::abs(to_ - from_)) return false;
   t = rest;
   return true;
 }

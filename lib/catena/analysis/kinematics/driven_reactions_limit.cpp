@@ -17,7 +17,6 @@
 #include "catena/analysis/kinematics/driven_reactions.hpp"
 #include "catena/analysis/pose/departure.hpp"
 #include "catena/analysis/run/name_list.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -37,6 +36,10 @@ constexpr Stencil after{{1, 2, 3, 4, 5, 6}, {6, -15, 20, -15, 6, -1}};
 constexpr double step_of_bridge = 1.0 / 16;
 // Of the largest (t - t*) lambda: more than the errors of the polynomial and of the bridge can make.
 constexpr double unbounded = 1e-7;
+// Part of the loads that limits may leave unbalanced.
+constexpr double unbalanced = 1e-6;
+// The same for least reactions a little away from t*.
+constexpr double balanced_beside = 1e-9;
 
 // The first that lies where the motion and the functions of time are known; nullptr: none does.
 const Stencil* choose_stencil(const Evaluator& evaluator, double t, double step, const BridgedStretch& stretch) {
@@ -63,7 +66,7 @@ bool DrivenReactions::solve_on_bridge(const MotionBridge& bridge, double t, std:
   find_loads(qd, qdd);
   if (plan_.rows == plan_.columns) return factored && solver_.solve_multipliers(loads_, lambda);
   if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
-  return minimum_norm_->factorize() && solve_least(lambda) <= thresholds::negligible;
+  return minimum_norm_->factorize() && solve_least(lambda) <= balanced_beside;
 }
 
 // lambda_ becomes B.
@@ -99,7 +102,7 @@ bool DrivenReactions::balances_loads(double scale) const {
     left = std::max(left, std::abs(rest[c]) / arm);
     size = std::max(size, std::abs(loads_[c]) / arm);
   }
-  return !(left > thresholds::same_value * std::max(size, scale / evaluator_.length_scale()));
+  return !(left > unbalanced * std::max(size, scale / evaluator_.length_scale()));
 }
 
 void DrivenReactions::take_limit(const DrivenInstant& now, const BridgedStretch& stretch) {

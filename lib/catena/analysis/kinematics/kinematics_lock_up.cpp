@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -14,6 +13,8 @@ namespace {
 
 // A step fails where it is longer than about half of the remaining way to a dead point.
 constexpr double most_steps_left = 4;
+// A zero of a determinant further away than so many times the distance estimated from the rates is a different one.
+constexpr double longest_way = 1e3;
 // A row whose smallest pivot has fallen to this part of the most that it has been is as near to a dead point as
 // positions can tell: they meet the constraints to 1e-12, the square of the distance.
 constexpr double locked_part = 1e-5;
@@ -118,8 +119,7 @@ bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   const double here = determinant(0), there = determinant(1);
   double part = here == there ? 1 : here / (here - there);
   if (const double left = determinant(part); left != here) part *= here / (here - left);
-  // A zero of a determinant further away than so many times the distance estimated from the rates is a different one.
-  determinant(part > 0 && part < 1 / thresholds::slight ? part : 1);
+  determinant(part > 0 && part < longest_way ? part : 1);
   point.t = now_.t + rest;
   solver_.residual_at(point.q);
   evaluator_.nu(nu);

@@ -12,13 +12,14 @@
 
 #include "catena/analysis/kinematics/course/step_rules.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
+// Steps below this part of the span, or of the time itself, are rounding.
+constexpr double smallest_step = 1e-13;
 // Passages are tried over stretches of this much motion (rad, length scales), one after the other.
 constexpr std::array<double, 6> reaches = {0.2, 0.1, 0.05, 0.015, 0.004, 0.001};
 // They are tried again once steps have become this part of their length at the first trial.
@@ -27,8 +28,9 @@ constexpr double try_again = 1.0 / 32;
 constexpr int patience = 2;
 // Least number of steps between rows where the ends of curves are watched.
 constexpr double steps_to_a_row = 32;
-// Curvature of the place on such a curve over a step, in parts of the curve: above it the step is too long.
-constexpr double largest_bend = 0.05;
+// Curvature of the place on such a curve over a step, in parts of the curve: above the first the step is too long,
+// below the second no closer check is needed.
+constexpr double largest_bend = 0.05, smallest_bend = 1e-9;
 
 }  // namespace
 
@@ -83,7 +85,7 @@ bool Kinematics::leaves_curve(double t) {
     if (!(std::abs(turn) < 1)) continue;
     const double top = m - bend * turn * turn / 2, beyond = std::max(-top, top - 1);
     leaves |= beyond > WatchedElements::allowed_excess;
-    leaves |= std::abs(bend) > thresholds::negligible && beyond > -std::abs(bend);
+    leaves |= std::abs(bend) > smallest_bend && beyond > -std::abs(bend);
   }
   // The factors are to be those of the step's end.
   solver_.factor_at(trial_);
@@ -112,9 +114,8 @@ struct Kinematics::Pace {
 Report Kinematics::follow_to(double t) {
   Report report;
   const double span = std::abs(t - now_.t);
-  Pace pace{.direction = t > now_.t ? 1.0 : -1.0,
-            .shortest = thresholds::carried_rounding * std::max(span, std::abs(t)),
-            .step = span};
+  Pace pace{
+      .direction = t > now_.t ? 1.0 : -1.0, .shortest = smallest_step * std::max(span, std::abs(t)), .step = span};
   // Within a run its own limits hold.
   std::optional<Evaluator::TimeLimit> limit;
   if (!run_.observer) {

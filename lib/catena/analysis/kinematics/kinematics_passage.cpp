@@ -17,7 +17,6 @@
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/pose/departure.hpp"
 #include "catena/analysis/pose/singular_start.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
@@ -26,9 +25,12 @@ namespace {
 
 // Residual of the polynomial, in length scales or rad, above rounding.
 constexpr double bridge_tolerance = 2e-12;
+constexpr double rounded_place = 16 * std::numeric_limits<double>::epsilon();
 // Part of a bridge after which drivers that rest at the singular instant are evaluated again: they have begun to move,
 // while the mechanism has not moved visibly.
 constexpr double moment = 2e-3;
+// Accuracy of instants on a bridge, relative to its length.
+constexpr double same_instant = 1e-9;
 
 }  // namespace
 
@@ -91,7 +93,7 @@ bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, do
   }
   // Lengths of a mechanism described far from the origin carry the rounding of its places: redundant links agree no
   // better than that.
-  const double tolerance = bridge_tolerance + thresholds::sum_rounding * (extent + place / evaluator_.length_scale());
+  const double tolerance = bridge_tolerance + 1e-14 * extent + rounded_place * place / evaluator_.length_scale();
   for (int k = 0; k < BridgeSearch::samples; ++k) {
     const double t = from + (to - from) * k / (BridgeSearch::samples - 1);
     evaluator_.set_time(t);
@@ -232,12 +234,10 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
   const double first = h > 0 ? instants.front() : instants.back();
   centre_crossing(crossing, first, target, reach);
   for (double instant : instants) {
-    if (instant > run_.latest + thresholds::negligible * length ||
-        instant < run_.earliest - thresholds::negligible * length)
-      continue;
+    if (instant > run_.latest + same_instant * length || instant < run_.earliest - same_instant * length) continue;
     // Instants closer than their accuracy count as one.
     if (!singular_points_.empty() && instant != first &&
-        std::abs(instant - singular_points_.back().t) < thresholds::negligible * (crossing.to - crossing.from)) {
+        std::abs(instant - singular_points_.back().t) < same_instant * (crossing.to - crossing.from)) {
       continue;
     }
     SingularPoint point = look_at(crossing, instant);

@@ -2,10 +2,18 @@
 #include <fmt/format.h>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
+namespace {
+
+// Below this reciprocal condition number reactions are taken from both sides of the singular configuration: a bridge,
+// which meets the constraints to 2e-12, gives them there with a relative error of 1e-6.
+constexpr double reactions_determined = 1e-6;
+// Pivots of blocks above this part of the largest that they have been determine rates to that accuracy.
+constexpr double well_determined = 1e-3;
+
+}  // namespace
+
 DrivenInstant Kinematics::here() const {
   const std::span<const double> unknown;
   return {now_.t, now_.q, now_.has_velocity ? std::span<const double>(now_.qd) : unknown,
@@ -19,9 +27,7 @@ Report Kinematics::find_rates(const Needs& needs) {
   if (now_.on_bridge) {
     // The bridge gives the rates; multipliers need factors of the matrix, which show whether they can be computed.
     if (!needs.multipliers) return report;
-    // Below this reciprocal condition number reactions are taken from both sides of the singular configuration: a
-    // bridge, which meets the constraints to 2e-12, gives them there with a relative error of 1e-6.
-    if (solver_.factor_at(now_.q) > thresholds::same_value) return reactions_.solve(here());
+    if (solver_.factor_at(now_.q) > reactions_determined) return reactions_.solve(here());
     reactions_.take_limit(here(), stretch_);
     return report;
   }
@@ -71,8 +77,7 @@ bool Kinematics::choose_better_rows() {
 
 Report Kinematics::check_redundant_rates(double allowed, bool in_words) {
   // Near a singular configuration rates are as accurate as the equations in use allow, which may be no digit at all.
-  // Pivots of blocks above this part of the largest that they have been determine rates to that accuracy.
-  if (now_.on_bridge || margins_.has_fallen(thresholds::slight)) return {};
+  if (now_.on_bridge || margins_.has_fallen(well_determined)) return {};
   return rows_.check_rates(here(), allowed, in_words);
 }
 

@@ -16,7 +16,6 @@
 #include "catena/analysis/pose/singular_start.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/dependence.hpp"
@@ -24,6 +23,9 @@
 namespace catena {
 namespace {
 
+constexpr double tolerance = 1e-13;           // of a step's error, length scales or rad
+constexpr double largest_residual = 1e-11;    // of positions after a step
+constexpr double smallest_norm_step = 1e-13;  // part of the time, or of the time a motion of 1 takes
 // Velocities larger than this multiple of their average are taken to grow without bound.
 constexpr double runaway = 30;
 constexpr std::size_t most_branches = 4;  // in a message
@@ -201,7 +203,7 @@ bool MinimumNormMotion::evaluate_stages(double h, double end, bool lands_on_brea
     const bool at_end = table.c[at(s)] == 1;
     const double t = at_end ? end : t_ + table.c[at(s)] * h;
     const Side side = at_end && lands_on_break ? Side::before : Side::after;
-    if (on_constraints && !(least_.project(t, side, trial_) <= thresholds::poorly_solved)) return false;
+    if (on_constraints && !(least_.project(t, side, trial_) <= largest_residual)) return false;
     if (!least_.velocity(t, side, trial_, stage_[at(s)])) return false;
   }
   combine(table.b, q_.data(), trial_);
@@ -212,8 +214,7 @@ bool MinimumNormMotion::evaluate_stages(double h, double end, bool lands_on_brea
 
 double MinimumNormMotion::error_size(double h) const {
   if (h == 0) return 0;
-  const double high = least_.size(error_) / thresholds::carried_rounding,
-               low = least_.size(error_low_) / thresholds::carried_rounding;
+  const double high = least_.size(error_) / tolerance, low = least_.size(error_low_) / tolerance;
   const double denominator = std::sqrt(high * high + 0.01 * low * low);
   return denominator == 0 ? 0 : high * high / denominator;
 }
@@ -225,7 +226,7 @@ double MinimumNormMotion::try_step(double end, bool lands_on_break, bool on_cons
   const double error = error_size(end - t_);
   if (!(error <= (on_constraints ? rate_allowance : 1))) return error;
   const double residual = least_.project(end, Side::before, trial_);
-  if (!(residual <= thresholds::poorly_solved)) return none;
+  if (!(residual <= largest_residual)) return none;
   residual_ = residual;
   return error;
 }
@@ -269,8 +270,7 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
     curve_places_ = evaluator_.curve_places();
     leg.rate = least_.size(stage_[0]);
     if (step_ == 0) {
-      step_ =
-          leg.rate > 0 ? 0.2 * std::pow(thresholds::carried_rounding, 1.0 / 8) / leg.rate : std::abs(leg.limit - t_);
+      step_ = leg.rate > 0 ? 0.2 * std::pow(tolerance, 1.0 / 8) / leg.rate : std::abs(leg.limit - t_);
     }
     if (Report made = make_step(leg, t); !made.ok()) return made;
   }
@@ -280,7 +280,7 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
 // One step of the leg, from the velocity in the first stage; `target`: where the motion is to come.
 Report MinimumNormMotion::make_step(const Leg& leg, double target) {
   const auto [direction, limit, breaks, rate] = leg;
-  const double smallest = thresholds::carried_rounding * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);
+  const double smallest = smallest_norm_step * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);
   for (bool rejected = false;;) {
     const double remaining = std::abs(limit - t_);
     double h = std::min(step_, rate > 0 ? step_rules::longest_step / rate : step_);

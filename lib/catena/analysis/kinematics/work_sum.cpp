@@ -15,6 +15,9 @@ namespace {
 // Of a stretch: rad, length scales. The rule is off by h^8 f^(8) 4!^4 / (9 8!^3) of the mean of f: 4e-13 where a power
 // of two periods a turn, f^(8) = 2^8 f, is followed over h = 0.2 rad.
 constexpr double longest_stretch = 0.2;
+// Parts of the energy exchanged so far: the error allowed in a stretch, above which it is repeated in shorter ones; and
+// the total error above which results carry a warning. Both include rounding of energies.
+constexpr double allowed_part = 1e-10, doubtful_error = 1e-6, work_rounding = thresholds::carried_rounding;
 constexpr double shortest_part = 1.0 / 4096;
 // The cubic part of the powers in a stretch, of the largest of them.
 constexpr double roughest = 0.05;
@@ -84,9 +87,7 @@ double WorkSum::stretch_error(double span, const Snapshot& end) const {
 }
 
 double WorkSum::allowed_error(const Snapshot& end) const {
-  // Of the energy exchanged so far, and rounding of energies: a stretch with a larger error is repeated in shorter
-  // ones.
-  return thresholds::poorly_solved * exchanged_ + thresholds::carried_rounding * energy_scale(end);
+  return allowed_part * exchanged_ + work_rounding * energy_scale(end);
 }
 
 bool WorkSum::can_be_shorter() const { return part_ > shortest_part; }
@@ -118,7 +119,7 @@ void WorkSum::show_unknown(Snapshot& row, std::size_t elements) {
 }
 
 std::string WorkSum::doubt() const {
-  if (!account_ || !(unsure_ > thresholds::same_value * exchanged_)) return {};
+  if (!account_ || !(unsure_ > doubtful_error * exchanged_)) return {};
   return fmt::format(
       "work is accurate to {:.2g} J only, of {:.3g} J exchanged: loads change too fast for the motion, or "
       "grow near a singular configuration",

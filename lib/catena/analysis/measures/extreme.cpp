@@ -4,16 +4,20 @@
 #include <array>
 #include <cmath>
 
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
 
+// Two values that differ by less than this part of the quantity's size are a tie: its instants are known to 1e-10.
+constexpr double tie = 1e-9;
 // A top may turn out this much higher than the parabola through samples makes it: of the size, see motion_samples.hpp.
 constexpr double slack = 1e-4;
 // Half the width of the window of the polynomial, in parts of the part.
 constexpr double window = 0.02;
+// Seven values of a smooth column foretell its top to some 1e-8 of their range, those about a kink to a tenth.
+constexpr double smooth = 1e-3;
+constexpr int most_steps = 60;
 
 /// The top of the parabola through three points, if it bends downwards.
 std::optional<double> top(double t0, double v0, double t1, double v1, double t2, double v2) {
@@ -71,8 +75,7 @@ void Extreme::consider(MotionSample sample, double value, double reach) {
     return;
   }
   size_ = std::max(size_, std::abs(value));
-  // Values that differ by less are a tie: their instants are known to 1e-10.
-  if (!best_ || value > largest_ + thresholds::negligible * size_) {
+  if (!best_ || value > largest_ + tie * size_) {
     others_.clear();
     best_ = std::move(sample);
     largest_ = value;
@@ -84,7 +87,7 @@ void Extreme::consider(MotionSample sample, double value, double reach) {
     if (apart) others_.push_back(std::move(*best_));
     best_ = std::move(sample);
     largest_ = value;
-  } else if (value >= largest_ - thresholds::negligible * size_ && apart) {
+  } else if (value >= largest_ - tie * size_ && apart) {
     others_.push_back(std::move(sample));
   }
 }
@@ -113,8 +116,7 @@ std::optional<Extreme::Peak> Extreme::settle(double centre, double h, double kno
   const std::optional<double> value = at(peak);
   // At a kink the polynomial misses the value by a part of what it bends by.
   const auto [least, most] = std::minmax_element(around.begin(), around.end());
-  // Seven values of a smooth column foretell its top to some 1e-8 of their range, those about a kink to a tenth.
-  if (!value || std::abs(*value - found->value) > thresholds::slight * (*most - *least)) return {};
+  if (!value || std::abs(*value - found->value) > smooth * (*most - *least)) return {};
   if (!(*value >= known - 1e-12 * std::max(size_, std::abs(known)))) return {};
   return Peak{peak, *value};
 }
@@ -127,7 +129,7 @@ std::optional<Extreme::Peak> Extreme::locate(Peak a, Peak middle, Peak b, std::o
     if (const std::optional<Peak> peak = settle(*guess, h, middle.value, piece, at)) return peak;
   }
   double step = b.t - a.t;
-  for (int n = 0; n < thresholds::most_bisections && step > 1e-9 * length; ++n) {
+  for (int n = 0; n < most_steps && step > 1e-9 * length; ++n) {
     const std::optional<double> top_of_three = top(a.t, a.value, middle.t, middle.value, b.t, b.value);
     const bool useful = top_of_three && *top_of_three > a.t && *top_of_three < b.t && n % 4 != 3;
     const double before = middle.t;

@@ -108,7 +108,7 @@ void MeasureSet::Account::move(MeasureResult& result, const End* end, const Movi
   for (std::size_t p = 0; p < parameters_; ++p) {
     const double by = moving.last.empty() ? 0 : moving.last[p], jump = jump_moves ? end->moving[p] : 0;
     const bool apart =
-        early || !(std::abs(by - jump) <= thresholds::same_value * std::max(std::abs(by), std::abs(jump)));
+        early || !(std::abs(by - jump) <= thresholds::same_rate * std::max(std::abs(by), std::abs(jump)));
     if (jump != 0 && is_final && !apart && end->change[column_] == 0) {
       result.gradient[p] = gradient_of(end->sample, column_, p) + end->rate[column_] * by;
       continue;
@@ -136,7 +136,7 @@ void MeasureSet::Account::move(MeasureResult& result, const End* end, const Movi
   for (std::size_t p = 0; p < parameters_; ++p) {
     const double by = moving.taken[measure][p], jump = instant.moving.empty() ? 0 : instant.moving[p];
     if (by == 0) continue;
-    const bool with_jump = jump != 0 && std::abs(by - jump) <= thresholds::same_value * std::abs(by);
+    const bool with_jump = jump != 0 && std::abs(by - jump) <= thresholds::same_rate * std::abs(by);
     if (with_jump && instant.before && instant.sample->change[column_] == 0 && !instant.rate_before.empty())
       result.gradient[p] = gradient_of(*instant.before, column_, p) + instant.rate_before[column_] * by;
     else

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
-
 namespace catena {
 namespace {
 
@@ -30,12 +27,21 @@ constexpr double shortest_part = 0x1p-12;
 // leaves as large in both halves is taken for noise: that of a smooth column falls to 1/32, that of a kink stays in one
 // half alone.
 constexpr double noisy_part = 0x1p-4;
+constexpr double no_progress = 0.5;
 
-// By how much more the quartic and the polynomial of degree eight miss in a part of twice the length, where half of
-// what is allowed is left for bends yet to come.
+// What the polynomial of degree eight may miss rows by, and by how much more it and the quartic miss in a part of twice
+// the length, where half of what is allowed is left for bends yet to come.
+constexpr double allowed_row_part = 1e-9;
 constexpr double quartic_grows_by = 2 * 32, eighth_grows_by = 2 * 512;
+// A jump below this part of a column's size so far is rounding.
+constexpr double rounding = 1e-9;
+// Limits at breakpoints are taken from instants at this part of a piece inside, or of t where rounding of instants asks
+// for more: a column that swings a hundred times in the piece bends by (6e-4)^3 there.
+constexpr double inside = 1e-6, inside_of_instant = 1e-11;
+// A derivative along an instant of which its two parts leave so little is zero: rates are good to 1e-9.
+constexpr double cancelled = 1e-8;
 // Differences for rates begin with this part of a piece, and are halved until they settle to the second, or so often.
-constexpr double first_difference = 1.0 / 32;
+constexpr double first_difference = 1.0 / 32, settled = 1e-11;
 constexpr int most_halvings = 14;
 
 double place_of(std::size_t sample) { return sample == 0 ? -1 : sample == 8 ? 1 : places[sample - 1]; }
@@ -80,8 +86,7 @@ MotionSample MotionSamples::take(const Snapshot& snapshot, bool with_derivative)
     sample.change.assign(columns_.size(), 0.0);
     derivatives_.at(snapshot, sample.derivative, sample.change);
     for (std::size_t c = 0; c < size_.size(); ++c) {
-      // A jump below this part of a column's size so far is rounding.
-      if (std::abs(sample.change[c]) <= thresholds::negligible * size_[c]) sample.change[c] = 0;
+      if (std::abs(sample.change[c]) <= rounding * size_[c]) sample.change[c] = 0;
     }
   }
   return sample;
@@ -102,10 +107,7 @@ std::optional<MotionSample> MotionSamples::see(const MotionPiece& piece, double 
 
 std::optional<MotionSample> MotionSamples::limit(const MotionPiece& piece, double t, bool with_derivative) const {
   const double length = piece.to() - piece.from(), inwards = t == piece.from() ? 1 : -1;
-  // So far inside, or further where rounding of instants asks for more: a column that swings a hundred times in the
-  // piece bends by (6e-4)^3 there.
-  const double d =
-      std::min(std::max(thresholds::same_value * length, thresholds::poorly_solved * std::abs(t)), length / 8);
+  const double d = std::min(std::max(inside * length, inside_of_instant * std::abs(t)), length / 8);
   MotionSample sum{t, std::vector<double>(columns_.size(), 0.0), {}, {}, inwards * d, {}};
   if (with_derivative) sum.derivative.assign(columns_.size() * parameters_, 0.0);
   sum.change.assign(columns_.size(), 0.0);
@@ -138,8 +140,7 @@ std::optional<MotionSample> MotionSamples::look(const MotionPiece& piece, double
       const double along = t == run_.first ? std::numeric_limits<double>::quiet_NaN() : (*rate)[c] * moves[p];
       const double parts = std::abs(derivative) + std::abs(along);
       derivative += along;
-      // A derivative along an instant of which its two parts leave so little is zero: rates are good to 1e-9.
-      if (std::abs(derivative) <= thresholds::half_the_digits * parts) derivative = 0;
+      if (std::abs(derivative) <= cancelled * parts) derivative = 0;
     }
   }
   return sample;
@@ -174,7 +175,7 @@ std::optional<std::vector<double>> MotionSamples::rates(const MotionPiece& piece
         change[c] = moved;
         best[c] = now[c];
       }
-      done = done && change[c] <= thresholds::poorly_solved * std::max(std::abs(best[c]), size_[c] / length);
+      done = done && change[c] <= settled * std::max(std::abs(best[c]), size_[c] / length);
     }
     last = now;
     if (done) break;
@@ -193,7 +194,7 @@ MotionSamples::Misfit MotionSamples::misfit(const Part& part) const {
     }
   }
   largest /= allowed_part;
-  const double rows = misfit_of_rows(part) / thresholds::negligible;
+  const double rows = misfit_of_rows(part) / allowed_row_part;
   return {std::max(largest, rows), std::max(quartic_grows_by * largest, eighth_grows_by * rows)};
 }
 
@@ -262,8 +263,8 @@ bool MotionSamples::cover_part(const MotionPiece& piece, const Part& part, doubl
   }
   Part first, second;
   if (!fill(piece, part.front(), part[4], first) || !fill(piece, part[4], part.back(), second)) return false;
-  if (length <= noisy_part * row_distance && misfit(first).here > thresholds::least_gain * off.here &&
-      misfit(second).here > thresholds::least_gain * off.here) {
+  if (length <= noisy_part * row_distance && misfit(first).here > no_progress * off.here &&
+      misfit(second).here > no_progress * off.here) {
     use(first, piece);
     use(second, piece);
     return true;

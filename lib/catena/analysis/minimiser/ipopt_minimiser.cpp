@@ -4,7 +4,6 @@
 
 #include "catena/analysis/minimiser/ipopt_program.hpp"
 #include "catena/analysis/minimiser/minimiser_parts.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -12,10 +11,10 @@ namespace {
 
 // Of the tolerance of variables, that of the equations of a minimum: in flat valleys a variable is off by the root of
 // what these leave. Ten iterates in a row that meet the tolerance itself will do: derivatives are good to some 1e-10.
-constexpr double part_of_tolerance = thresholds::slight, acceptable = 1 / part_of_tolerance;
+constexpr double part_of_tolerance = 1e-3, acceptable = 1 / part_of_tolerance;
 constexpr int acceptable_iterations = 10;
 // Where none is asked for.
-constexpr double usual_tolerance = thresholds::half_the_digits;
+constexpr double usual_tolerance = 1e-8;
 
 /// Rows of constraints: the unequal ones first, then the equal ones; Jacobians dense.
 class Problem final : public IpoptProgram {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <mutex>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -18,7 +17,7 @@ using Ipopt::Index;
 using Ipopt::Number;
 
 // Of the complementarity at a warm start.
-constexpr double near_barrier = thresholds::negligible;
+constexpr double near_barrier = 1e-9;
 
 std::recursive_mutex& turn() {
   static std::recursive_mutex mutex;

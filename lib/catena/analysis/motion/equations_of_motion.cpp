@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/assembly/systems/seen_mass.hpp"
 #include "catena/base/at.hpp"
@@ -17,8 +16,12 @@ namespace {
 // The mass that replaces zero, as a part of the constrained mass r: four rounds of refinement then reach rounding, at
 // the cost of four digits in every solve; a ratio up to a hundred times larger is accepted and takes eight rounds more.
 constexpr double small_part = 1e-4, largest_part = 1e-2;
-// Passes, each of which reduces small masses a thousandfold at most: 18 powers of ten beyond the first guess.
+// Largest reduction of the small masses in one pass, and number of passes: 18 powers of ten beyond the first guess.
+constexpr double most_reduction = 1e-3;
 constexpr int most_weighings = 6;
+// Part of the forces on massless coordinates that may stay unbalanced: rounding leaves 1e-15, and a coordinate without
+// constrained mass leaves all of it.
+constexpr double unresisted = 1e-9;
 
 }  // namespace
 
@@ -79,7 +82,7 @@ void EquationsOfMotion::weigh_massless(std::span<const double> q) {
     bool reduced = false;
     for (std::size_t k = 0; k < shares.size(); ++k) {
       if (!(shares[k] > largest_part)) continue;
-      masses_.substitute[at(masses_.massless[k])] *= std::max(small_part / shares[k], thresholds::slight);
+      masses_.substitute[at(masses_.massless[k])] *= std::max(small_part / shares[k], most_reduction);
       reduced = true;
     }
     if (!reduced) return;
@@ -87,7 +90,7 @@ void EquationsOfMotion::weigh_massless(std::span<const double> q) {
 }
 
 std::string EquationsOfMotion::undetermined() const {
-  if (masses_.massless.empty() || !(system_.massless_residual() > thresholds::negligible)) return {};
+  if (masses_.massless.empty() || !(system_.massless_residual() > unresisted)) return {};
   const int worst = system_.worst_massless();
   return fmt::format(
       "the motion of body \"{}\" is not determined: its {} is zero and no constraint ties it to a body with mass",
@@ -134,12 +137,12 @@ bool EquationsOfMotion::accelerations(double t, Side side, std::span<const doubl
   if (plan_.rows > 0) evaluator_.gamma(qd, gamma_);
   if (plan_.rows > 0 && stabilisation > 0) stabilise(qd, stabilisation);
   system_.solve_motion(loads_, gamma_, qdd, lambda_, evaluator_.counters);
-  if (system_.massless_residual() > thresholds::negligible) {
+  if (system_.massless_residual() > unresisted) {
     // The constrained masses have become so small that the substitutes are no longer small beside them.
     weigh_massless(q);
     if (!evaluate_jacobian(t, side, q)) return false;
     system_.solve_motion(loads_, gamma_, qdd, lambda_, evaluator_.counters);
-    if (system_.massless_residual() > thresholds::negligible) return false;
+    if (system_.massless_residual() > unresisted) return false;
   }
   if (state_loads_ && !state_loads_->complete(*this, gamma_, loads_, qdd, lambda_)) return false;
   double sum = 0;
@@ -169,7 +172,7 @@ double EquationsOfMotion::project_position(std::span<double> q, int max_iteratio
   for (int k = 0;; ++k) {
     const double size = position_residual(q);
     // Stop at rounding, when nothing is gained any more, or when the residual is NaN.
-    if (!(size > thresholds::few_roundings) || k == max_iterations || size > 0.5 * before) return size;
+    if (!(size > thresholds::position_rounding) || k == max_iterations || size > 0.5 * before) return size;
     before = size;
     system_.least_change(residual_, change_, multipliers_, evaluator_.counters);
     for (std::size_t c = 0; c < change_.size(); ++c) q[c] -= change_[c];
@@ -187,7 +190,7 @@ double EquationsOfMotion::project_velocity(std::span<double> qd, double rate) {
     system_.multiply_add(qd, residual_);
     const double size = scaling_.row_norm(residual_);
     if (k == 0) first = size;
-    if (!(size > thresholds::few_roundings * rate) || k == 2) break;
+    if (!(size > thresholds::position_rounding * rate) || k == 2) break;
     system_.least_change(residual_, change_, multipliers_, evaluator_.counters);
     for (std::size_t c = 0; c < change_.size(); ++c) qd[c] -= change_[c];
   }

@@ -5,7 +5,6 @@
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/analysis/pose/minimum_norm.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/columns/reaction.hpp"
 #include "catena/elements/all.hpp"
@@ -13,6 +12,12 @@
 namespace catena {
 namespace {
 
+// Impulses below this part of the largest, or of the largest momentum, are rounding: velocities are known to 1e-12 of
+// the largest, and a system of a condition of 10^2 leaves this.
+constexpr double rounding = 1e-10;
+// A velocity that changes by less than this part of the largest that the driver had since its last breakpoint does not
+// jump: tables and laws meet their ends to about 1e-12 of that.
+constexpr double no_jump = 1e-9;
 // Instants since the last breakpoint at which the largest rate of a driver is looked for.
 constexpr int looks = 8;
 
@@ -81,8 +86,7 @@ std::vector<ConstraintImpulse> impulses_of(EquationsOfMotion& equations, std::sp
     largest = std::max(largest, std::abs(mass[c] * qd[c]) / (c % 3 == 2 ? evaluator.length_scale() : 1));
   std::vector<ConstraintImpulse> told;
   for (std::size_t k = 0; k < impulses.size(); ++k) {
-    // Impulses below this part of the largest, or of the largest momentum, are rounding.
-    if (sizes[k] > thresholds::poorly_solved * largest) told.push_back(impulses[k]);
+    if (sizes[k] > rounding * largest) told.push_back(impulses[k]);
   }
   std::sort(told.begin(), told.end(), [](const auto& a, const auto& b) { return a.element < b.element; });
   return told;
@@ -111,9 +115,7 @@ std::vector<int> drivers_that_jump(Evaluator& evaluator, double from, double t) 
   note(after = rates(t, Side::after));
   std::vector<int> jump;
   for (std::size_t k = 0; k < drivers.size(); ++k) {
-    // A velocity that changes by less than this part of the largest that the driver had since its last breakpoint
-    // does not jump: tables and laws meet their ends to about 1e-12 of that.
-    if (std::abs(after[k] - before[k]) > thresholds::negligible * largest[k]) jump.push_back(drivers[k]);
+    if (std::abs(after[k] - before[k]) > no_jump * largest[k]) jump.push_back(drivers[k]);
   }
   std::sort(jump.begin(), jump.end());
   return jump;

@@ -12,7 +12,6 @@
 #include <numeric>
 
 #include "catena/analysis/pose/assemble.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/assembly/systems/tangent.hpp"
 #include "catena/base/at.hpp"
 
@@ -23,12 +22,19 @@ namespace {
 constexpr int max_approach_iterations = 60;
 // Iterations for a return to the constraints from nearby: if more are needed, the step was too long.
 constexpr int max_return_iterations = 12;
+// Of a distance, below which a difference of two distances is rounding.
+constexpr double seen_in_distance = 1e-12;
 // A slope of this part of the distance changes it by half its square, which is seen; of smaller ones only slopes tell
 // what a step is worth.
 constexpr double unseen_slope = 1e-5;
+// Of the distance: what Newton's last step leaves is far below. With as many equations as coordinates there is freedom
+// only where equations depend on each other, and what is left as a rule is rounding times condition.
+constexpr double settled_slope = 1e-13, settled_without_freedom = 1e-10;
 // A direction is found to this part of its slope, and to the square of what is left of the first slope: as many digits
 // as Newton's step has.
 constexpr double direction_digits = 0.1;
+// And to no more than this, which is rounding of what the constraints allow beside what they do not.
+constexpr double most_direction_digits = 1e-6;
 constexpr int max_directions = 50;
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -63,12 +69,10 @@ double Assembler::find_approach(std::span<const double> q, std::span<const doubl
   std::copy(z.begin(), z.end(), step_.begin());
   if (!(first > 0)) return 0;
   const double distance = weighted_distance(q, estimate);
-  // What Newton's last step leaves is far below. With as many equations as coordinates there is freedom only where
-  // equations depend on each other, and what is left as a rule is rounding times condition.
-  const double settled = plan_.rows < plan_.columns ? thresholds::carried_rounding : thresholds::poorly_solved;
+  const double settled = plan_.rows < plan_.columns ? settled_slope : settled_without_freedom;
   if (std::sqrt(first) <= settled * distance) return 0;
   const double enough =
-      first * std::pow(std::clamp(std::sqrt(first) / distance, thresholds::same_value, direction_digits), 2);
+      first * std::pow(std::clamp(std::sqrt(first) / distance, most_direction_digits, direction_digits), 2);
   std::vector<CurvatureEntry> curvature;
   visit_curvature(evaluator_, lambda_, [&](int row, int column, double value) {
     if (value != 0) curvature.push_back({row, column, value});
@@ -111,7 +115,7 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
     double turn = 0;
     for (std::size_t c = 2; c < step_.size(); c += 3) turn = std::max(turn, std::abs(step_[c]));
     const std::vector<double> direction = step_;
-    const double closer = distance * (1 + (unseen ? thresholds::solved : -thresholds::solved));
+    const double closer = distance * (1 + (unseen ? seen_in_distance : -seen_in_distance));
     bool found = false;
     for (double factor = turn > largest_turn_of_a_step ? largest_turn_of_a_step / turn : 1; factor > 1e-3 && !found;
          factor /= 2) {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <random>
 
-#include "catena/analysis/run/margins.hpp"
-
 namespace catena {
 namespace {
 
+// Of their size: roots that are nearer to each other are one.
+constexpr double same_root = 1e-3;
 // As many as six quadrics can have.
 constexpr std::size_t most_roots = 64;
 constexpr int starts_per_root = 40;
@@ -106,8 +106,8 @@ std::vector<std::vector<double>> real_roots(const Quadratics& system, const std:
     for (double& value : a) value = reach * normal(random);
     if (!solve_from(system, a)) continue;
     const double size = 1 + std::sqrt(square_sum(a));
-    const bool known = std::any_of(roots.begin(), roots.end(),
-                                   [&](const auto& root) { return distance(root, a) < thresholds::slight * size; });
+    const bool known =
+        std::any_of(roots.begin(), roots.end(), [&](const auto& root) { return distance(root, a) < same_root * size; });
     if (!known && size < 1e6) roots.push_back(a);
   }
   if (roots.empty()) return roots;

@@ -10,13 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "catena/analysis/run/thresholds.hpp"
-
 namespace catena {
 
 struct Quadratics {
   /// F below this counts as zero; so does a coefficient below this part of the terms that it is the sum of.
-  static constexpr double vanishing = thresholds::same_value;
+  static constexpr double vanishing = 1e-6;
 
   std::size_t k = 0;
   std::vector<double> constant;                // per polynomial

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -12,7 +11,7 @@ namespace {
 // Elimination among more rows than this would fill the matrix, for a list of names too long to read.
 constexpr int most_rows = 200;
 // Part of the largest weight of a combination below which a row may not take part.
-constexpr double certain = 1e-4;
+constexpr double certain = 1e-4, rounding = 1e-11;
 // Part of the sum of sizes above which a right-hand side is not rounding.
 constexpr double row_disagreement = 1e-7;
 
@@ -63,7 +62,7 @@ std::vector<RedundantRow> choose_redundant_rows(const Plan& plan, const RankRepo
       for (const auto& [row, weight] : redundant.combination) {
         double& value = other.combination[row];
         value -= factor * weight;
-        if (row == best || std::abs(value) <= thresholds::poorly_solved * size) other.combination.erase(row);
+        if (row == best || std::abs(value) <= rounding * size) other.combination.erase(row);
       }
     }
   }

@@ -6,12 +6,15 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "catena/analysis/run/margins.hpp"
 #include "catena/assembly/rope_ways.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
+
+// A tangent that has turned further, rad, is counted anew: what it turns until the next look is known within half a
+// turn of it.
+constexpr double turned_far = 0.5;
 
 /// How far the straight lines of a route have turned at most since it lay so over the same pulleys.
 double turned(const RopeRoute& route, const RopeTurns& laid) {
@@ -90,9 +93,7 @@ bool RopeWaysAt::look(std::size_t r, std::vector<Frame<double>> frames, bool in_
   }
   last_[r] = std::move(frames);
   has_changed_ = has_changed_ || changed;
-  // A tangent that has turned further is counted anew: what it turns until the next look is known within half a turn
-  // of it.
-  return route.off != laid_[r].off || turned(route, laid_[r].memory) > thresholds::longest_turn;
+  return route.off != laid_[r].off || turned(route, laid_[r].memory) > turned_far;
 }
 
 bool RopeWaysAt::lay_ways(std::span<const char> changed) {

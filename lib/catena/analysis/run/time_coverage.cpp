@@ -4,11 +4,13 @@
 
 #include <cmath>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
+
+// Times are multiples of a step and carry its rounding.
+constexpr double rounding = 1e-12;
 
 /// The element that reads the model's function of time number `function`.
 std::string reader_of(const Model& model, int function) {
@@ -31,9 +33,8 @@ Report check_time_functions(const Model& model, const TimeRange& run) {
   Report report;
   for (std::size_t k = 0; k < model.functions.size(); ++k) {
     const TimeRange domain = model.functions[k].domain();
-    // Times are multiples of a step and carry its rounding.
-    if (run.first >= domain.first - thresholds::solved * std::abs(domain.first) &&
-        run.last <= domain.last + thresholds::solved * std::abs(domain.last)) {
+    if (run.first >= domain.first - rounding * std::abs(domain.first) &&
+        run.last <= domain.last + rounding * std::abs(domain.last)) {
       continue;
     }
     report.status = Status::refused;

@@ -12,10 +12,10 @@ namespace {
 
 // Differences for f''' take this part of the piece after the instant: their error is its fourth power. Of two that
 // differ by less than the second part of their size neither is told from the other.
-constexpr double part_of_piece = 1e-3;
+constexpr double part_of_piece = 1e-3, no_kink = 1e-6;
 // Differences for rates begin with this part of a stretch, and are halved until they settle to the second part; those
 // that have not settled to the third one tell nothing, as in a stretch that is no longer than rounding.
-constexpr double first_part = 1.0 / 16, unsettled_rate = 1e-5;
+constexpr double first_part = 1.0 / 16, settled_rate = 1e-10, unsettled_rate = 1e-5;
 constexpr int most_halved = 12;
 
 /// Largest values of f, f', f'' and of their derivatives by the parameters around an instant.
@@ -49,7 +49,7 @@ FunctionJump kink_of(const TimeFunction<DesignScalar>& function, double t, const
   for (std::size_t p = 0; p < parameters_at_once; ++p) any = any || moves(p);
   if (!any) return jump;
   const double before = third_derivative(function, t, Side::before), after = third_derivative(function, t, Side::after);
-  if (!(std::abs(before - after) > thresholds::same_value * std::max(std::abs(before), std::abs(after)))) return jump;
+  if (!(std::abs(before - after) > no_kink * std::max(std::abs(before), std::abs(after)))) return jump;
   jump.order = 3;
   for (std::size_t p = 0; p < parameters_at_once; ++p) {
     if (moves(p)) jump.rate[p] = -change.d[p] / (before - after);
@@ -115,7 +115,7 @@ std::optional<double> rate_at_end(const MotionStretch& stretch, const std::funct
       best = now;
     }
     last = now;
-    if (change <= thresholds::poorly_solved * std::abs(best)) break;
+    if (change <= settled_rate * std::abs(best)) break;
   }
   if (!(change <= unsettled_rate * std::abs(best))) return {};
   return best;
@@ -140,7 +140,7 @@ void MovingInstant::add(const FunctionJump& jump, std::size_t first) {
       if (std::isnan(other)) known = other;
       continue;
     }
-    const bool apart = std::abs(other - known) > thresholds::same_value * std::max(std::abs(other), std::abs(known));
+    const bool apart = std::abs(other - known) > thresholds::same_rate * std::max(std::abs(other), std::abs(known));
     if (!alone && apart)
       known = std::numeric_limits<double>::quiet_NaN();
     else if (alone && !std::isnan(known))

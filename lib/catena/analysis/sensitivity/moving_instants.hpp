@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "catena/analysis/run/row_observer.hpp"
-#include "catena/columns/column_set.hpp"
 #include "catena/base/design_scalar.hpp"
 #include "catena/base/time_function.hpp"
+#include "catena/columns/column_set.hpp"
 
 namespace catena {
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "catena/analysis/spectrum/free_motions.hpp"
@@ -41,11 +42,11 @@ std::size_t lowest_of(std::span<const double> theta) {
 }
 
 // The lowest k after at most `steps` steps, and its vector; ends when it has settled. `negative`: k < 0 is searched
-// for. Zero where nothing was found.
+// for. Zero where there is no freedom, not a number where solutions are none.
 double find_lowest(Lanczos& lanczos, int steps, bool negative, std::vector<double>& mode) {
   if (!lanczos.begin_inverted()) return 0;
   std::size_t chosen = 0;
-  double best = 0, before = 0;
+  double best = std::numeric_limits<double>::quiet_NaN(), before = 0;
   for (int step = 0; step < steps && lanczos.advance(step + 1 == steps); ++step) {
     lanczos.find_spectrum();
     chosen = lowest_of(lanczos.theta());
@@ -54,7 +55,7 @@ double find_lowest(Lanczos& lanczos, int steps, bool negative, std::vector<doubl
     if (settled || lanczos.is_complete()) break;
     before = best;
   }
-  if (best != 0) mode = lanczos.vector(static_cast<int>(chosen));
+  if (std::isfinite(best)) mode = lanczos.vector(static_cast<int>(chosen));
   return best;
 }
 
@@ -101,6 +102,10 @@ class Certifier {
     ModeOperator inverse(system_, weights_, false);
     Lanczos lanczos(inverse);
     const double lowest = find_lowest(lanczos, unstable ? most_steps : usual_steps, unstable, result_.mode);
+    if (std::isnan(lowest)) {
+      result_.valid = false;
+      return result_;
+    }
     // Where the constraints leave no freedom the inverse contains only eps: far stiffer than K.
     if (lowest == 0 || std::abs(lowest) > rigid_part * (nothing_ ? floor_ : stiffest_)) {
       result_.mode.clear();

@@ -21,7 +21,7 @@
 namespace catena {
 
 struct Certificate {
-  bool valid = false;  ///< false: no factorization at all
+  bool valid = false;  ///< false: no factorization at all, or no solutions in numbers
   bool stable = false, neutral = false;
   int negative_modes = 0;
   double softest_stiffness = 0;          ///< lowest k; where there are negative ones, the most negative that was found

@@ -21,6 +21,9 @@ namespace {
 
 using Dense = Eigen::MatrixXd;
 
+// Left and right subspaces that are closer to perpendicular than this tell nothing about the value: it stays as it is.
+constexpr double lost_angle = 1e-12;
+
 }  // namespace
 
 double CirculatoryMode::frequency() const { return std::sqrt(std::complex<double>(omega2, imaginary)).real(); }
@@ -66,9 +69,7 @@ class CirculatoryMotions::Refinement {
       for (Eigen::Index j = 0; j < x.cols(); ++j)
         rounding = std::max(rounding, floor_.between(span(zy, j), span(zx, k)));
     }
-    // Left and right subspaces that are closer to perpendicular than this tell nothing about the value: it stays as
-    // it is.
-    const bool known = angle > thresholds::solved;
+    const bool known = angle > lost_angle;
     if (known) {
       b = (overlap.inverse() * b).eval();
       rounding /= angle;
@@ -170,6 +171,7 @@ bool CirculatoryMotions::find(std::span<const double> lambda, double residual, C
   Dense reduced = refinement.reduced();
   if (!reduced.allFinite()) return false;
   const double size = reduced.cwiseAbs().maxCoeff();
+  // Rounding of the products that make a reduced stiffness, in parts of its largest entry.
   modes.symmetric = (reduced - reduced.transpose()).cwiseAbs().maxCoeff() <= thresholds::carried_rounding * size;
   Eigen::EigenSolver<Dense> solver(reduced);
   Dense right = solver.pseudoEigenvectors(), left = right.inverse();

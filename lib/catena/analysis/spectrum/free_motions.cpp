@@ -5,16 +5,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/name_list.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
+
+// Part of the largest travel in a motion that a body must have to take part in it: rounding of shapes is far below.
+constexpr double least_share = 1e-8;
+// Part of the forces' largest work below which a motion counts as unloaded.
+constexpr double no_work = 1e-9;
 
 // Columns of a model above which `check`, which must stay quick, does not search.
 constexpr int most_checked_columns = 20000;
@@ -30,7 +33,7 @@ void drop_driven(const StaticSystem& system, std::span<const double> residual, d
     work.push_back(sum);
     square += sum * sum;
   }
-  if (!(std::sqrt(square) > thresholds::negligible * force) || shapes.empty()) return;
+  if (!(std::sqrt(square) > no_work * force) || shapes.empty()) return;
   // Householder: the first of the new motions has all the work, the others none.
   const std::size_t first = static_cast<std::size_t>(
       std::max_element(work.begin(), work.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }) -
@@ -59,7 +62,7 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   system.residual(lambda, residual);
   // Where forces balance only to rounding, stiffnesses are no more accurate.
   const double force = system.force_scale(lambda), left = system.force_norm(residual);
-  const StiffnessFloor floor(system, lambda, left <= thresholds::negligible * force ? left : 0, &groups);
+  const StiffnessFloor floor(system, lambda, left <= no_work * force ? left : 0, &groups);
   const std::vector<double> arms = body_arms(system, lambda);
   std::vector<double> weight;
   for (int coordinate : system.plan().coordinate) {
@@ -126,9 +129,7 @@ std::vector<std::string> names_of_moving(StaticSystem& system, std::span<const d
   }
   std::vector<int> bodies;
   for (int b = 0; b < plan.moving; ++b) {
-    // A body takes part in a motion if its travel is more than this part of the largest: rounding of shapes is far
-    // below.
-    if (share[at(b)] > thresholds::half_the_digits) bodies.push_back(plan.model_body[at(b)]);
+    if (share[at(b)] > least_share) bodies.push_back(plan.model_body[at(b)]);
   }
   std::sort(bodies.begin(), bodies.end());
   std::vector<std::string> names;

@@ -14,12 +14,11 @@
 
 #include "catena/analysis/balance/static_system.hpp"
 #include "catena/analysis/run/system_state.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 
 /// Part of sum |v_i K_ij v_j| below which a stiffness counts as none: the place itself is known no better.
-inline constexpr double neutral_part = thresholds::poorly_solved;
+inline constexpr double neutral_part = 1e-10;
 
 struct FreeMotions {
   int count = 0;                    ///< how many independent ones

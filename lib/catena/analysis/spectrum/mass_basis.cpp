@@ -4,10 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
+namespace {
+
+// Part of a motion, in lengths, that must be that of coordinates with mass: the same measure as for ranks.
+constexpr double least_part = 1e-10;
+
+}  // namespace
+
 std::vector<double> basis_weights(StaticSystem& system, const MotionGroups& groups, std::span<const double> mass) {
   std::vector<double> weight(mass.begin(), mass.end());
   for (const MotionGroup& group : groups.groups()) {
@@ -34,8 +40,7 @@ std::optional<int> use_masses(StaticSystem& system, MotionGroup& group, std::spa
     moved.row(static_cast<Eigen::Index>(k)) = z.row(heavy[k]) / system.matrix().inverse_arms()[at(c)];
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> geometry(moved.rows(), moved.cols());
-  // Of a motion, in lengths, at least this part must be that of coordinates with mass: the same measure as for ranks.
-  geometry.setThreshold(thresholds::poorly_solved);
+  geometry.setThreshold(least_part);
   geometry.compute(moved);
   if (geometry.rank() < z.cols()) {
     // The motion that pivoting found last moves no mass: its largest massless coordinate.

@@ -4,18 +4,19 @@
 #include <cmath>
 #include <utility>
 
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/tridiagonal.hpp"
 
 namespace catena {
 namespace {
 
-// Part of theta that a settled mode's residual may have, unless that is rounding of the largest theta.
-constexpr double settled_part = 1e-11;
+// Parts of theta, and of the largest theta, that a settled mode's residual may have.
+constexpr double settled_part = 1e-11, rounding_part = 1e-14;
 // A vector that lost all but this of its length to orthogonality is rounding; one that lost much is put back into the
 // null space, where its own rounding may have left it.
-constexpr double lost_part = thresholds::carried_rounding, polluted_part = thresholds::slight;
+constexpr double lost_part = thresholds::carried_rounding, polluted_part = 1e-3;
+// A start vector with no more than this outside the space found so far: the space is complete.
+constexpr double nothing_new = 1e-7;
 constexpr int steps_between_looks = 4;
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -85,11 +86,10 @@ bool Lanczos::add_new_vector() {
   const double raw = length(v);
   op_.project(v);
   const double inside = length(v);
-  // A start vector with no more outside the space found so far: the space is complete.
-  if (!(inside > thresholds::half_the_digits * raw)) return false;
+  if (!(inside > nothing_new * raw)) return false;
   orthogonalise(v, nullptr);
   const double left = length(v);
-  if (!(left > thresholds::half_the_digits * inside) || !std::isfinite(left)) return false;
+  if (!(left > nothing_new * inside) || !std::isfinite(left)) return false;
   for (double& x : v) x /= left;
   if (!clean(v)) return false;
   basis_.push_back(std::move(v));
@@ -119,8 +119,7 @@ bool Lanczos::update_spectrum(const Choice& choose) {
   for (int k : chosen) {
     const double residual =
         std::abs(beta_.back() * coefficients_[(static_cast<std::size_t>(k) + 1) * theta_.size() - 1]);
-    if (residual >
-        std::max(settled_part * std::abs(theta_[static_cast<std::size_t>(k)]), thresholds::sum_rounding * largest))
+    if (residual > std::max(settled_part * std::abs(theta_[static_cast<std::size_t>(k)]), rounding_part * largest))
       return false;
   }
   return !chosen.empty();

@@ -4,20 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
+#include <limits>
 
 namespace catena {
 namespace {
 
+// First sigma, relative to the upper end of the spectrum.
+constexpr double first_shift = 1e-8;
+// Where a shift has no factors, for it is an omega^2, others at this part of it further down are tried.
+constexpr double step_aside = 0.618;
 // Largest ratio of sigma to the lowest omega^2 that is not zero.
 constexpr double shift_window = 1e4;
+// Where modes are counted: this far below the highest one, relative to it and to the upper end; where the highest is
+// zero, below what rounding of the stiffnesses makes of zeros.
+constexpr double count_margin = 1e-8, count_rounding = 1e-15, zero_rounding = 1e-12;
 // Accuracy of the bracket of the lowest omega^2, as a factor.
 constexpr double bracket = 1.05;
-
-// Where a shift has no factors, for it is an omega^2, others so much further down are tried.
-double step_aside(double sigma) { return (1 - thresholds::golden_part) * std::abs(sigma); }
 
 // All of the negative thetas, at least `below`, and the `above` largest ones.
 std::vector<int> choose(std::span<const double> theta, int below, int above) {
@@ -69,12 +71,12 @@ double ModeSearch::lowest_shift(double upper) {
     some = none;
     none *= 16;
     double sigma = -none;
-    if (!factorize(sigma, step_aside(sigma))) break;
+    if (!factorize(sigma, step_aside * std::abs(sigma))) break;
   } while (op_.below() > 0);
   while (none > bracket * some) {
     const double middle = std::sqrt(some * none);
     double sigma = -middle;
-    const bool below = factorize(sigma, step_aside(sigma)) && op_.below() > 0;
+    const bool below = factorize(sigma, step_aside * std::abs(sigma)) && op_.below() > 0;
     (below ? some : none) = middle;
   }
   return -none;
@@ -106,13 +108,13 @@ Report ModeSearch::cancelled() const { return {Status::cancelled, "stopped while
 Report ModeSearch::find_most(int count, double& sigma, bool& complete, std::vector<Mode>& modes) {
   const int most = std::min(static_cast<int>(mass_.size()), Lanczos::most_vectors(count));
   for (int attempt = 0; attempt < 2; ++attempt) {
-    if (!factorize(sigma, step_aside(sigma))) return no_factors();
+    if (!factorize(sigma, step_aside * std::abs(sigma))) return no_factors();
     const int below = op_.below();
     const bool many = below > count;
     int negative = many ? 0 : below;
     if (many) {
       sigma = lowest_shift(sigma);
-      if (!factorize(sigma, step_aside(sigma))) return no_factors();
+      if (!factorize(sigma, step_aside * std::abs(sigma))) return no_factors();
     }
     Lanczos lanczos(op_), again(op_);
     Lanczos* found = &lanczos;
@@ -122,7 +124,7 @@ Report ModeSearch::find_most(int count, double& sigma, bool& complete, std::vect
     if (!settled && !lanczos.exhausted() && negative > 0) {
       // Unstable modes far from zero: searched with a shift at their end of the spectrum.
       sigma = lowest_shift(sigma);
-      if (!factorize(sigma, step_aside(sigma))) return no_factors();
+      if (!factorize(sigma, step_aside * std::abs(sigma))) return no_factors();
       negative = 0;
       found = &again;
       settled = again.run(wanted, most, go_on_);
@@ -151,8 +153,7 @@ Report ModeSearch::find_missing(int count, double sigma, std::vector<Mode>& mode
     std::sort(modes.begin(), modes.end(), lower);
     modes.resize(std::min(modes.size(), static_cast<std::size_t>(count)));
     const double top = modes.back().omega2;
-    double mu = top - thresholds::half_the_digits * std::abs(top) -
-                (top == 0 ? thresholds::solved : thresholds::few_roundings) * size_;
+    double mu = top - count_margin * std::abs(top) - (top == 0 ? zero_rounding : count_rounding) * size_;
     const int found =
         static_cast<int>(std::count_if(modes.begin(), modes.end(), [&](const Mode& mode) { return mode.omega2 < mu; }));
     if (!factorize(mu, top - mu)) return no_factors();
@@ -164,7 +165,7 @@ Report ModeSearch::find_missing(int count, double sigma, std::vector<Mode>& mode
                           found + missing),
               {}};
     }
-    if (!factorize(sigma, step_aside(sigma))) return no_factors();
+    if (!factorize(sigma, step_aside * std::abs(sigma))) return no_factors();
     std::vector<std::vector<double>> locked;
     for (const Mode& mode : modes) locked.push_back(mode.shape);
     Lanczos others(op_, std::move(locked));
@@ -182,7 +183,7 @@ Report ModeSearch::find_missing(int count, double sigma, std::vector<Mode>& mode
 Report ModeSearch::find(int count, std::vector<Mode>& modes) {
   modes.clear();
   if (mass_.empty() || count == 0) return {};
-  double sigma = -thresholds::half_the_digits * size_;
+  double sigma = -first_shift * size_;
   bool complete = false;
   if (Report found = find_most(count, sigma, complete, modes); !found.ok()) return found;
   if (!complete) {
@@ -191,8 +192,8 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
   std::sort(modes.begin(), modes.end(), lower);
   unstable_ = static_cast<int>(std::count_if(modes.begin(), modes.end(), [](const Mode& m) { return m.omega2 < 0; }));
   if (unstable_ == count && !complete) {
-    double zero = -thresholds::solved * size_;
-    if (factorize(zero, thresholds::solved * size_)) unstable_ = std::max(unstable_, op_.below());
+    double zero = -zero_rounding * size_;
+    if (factorize(zero, zero_rounding * size_)) unstable_ = std::max(unstable_, op_.below());
   }
   return {};
 }

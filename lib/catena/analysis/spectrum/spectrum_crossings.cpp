@@ -9,8 +9,12 @@
 namespace catena {
 namespace {
 
-// How many crossings an interval may have.
+// Accuracy of a crossing in parts of the interval; steps to get there, and how many crossings an interval may have.
+constexpr double crossing_accuracy = 1e-13;
+constexpr int most_crossing_steps = 90;
 constexpr std::size_t most_crossings = 40;
+// Crossings nearer to each other than this part of the interval are one.
+constexpr double same_crossing = 1e-9;
 // Of golden section for a dip.
 constexpr int most_dip_steps = 30;
 
@@ -59,14 +63,11 @@ double squared_distance(const CirculatoryModes& found, double omega2) {
 class Crossing {
  public:
   Crossing(const SpectrumAt& at, const SpectrumSample& low, const SpectrumSample& high)
-      : at_(at),
-        low_(low),
-        high_(high),
-        accuracy_(thresholds::carried_rounding * std::max(std::abs(high.s - low.s), 1e-300)) {}
+      : at_(at), low_(low), high_(high), accuracy_(crossing_accuracy * std::max(std::abs(high.s - low.s), 1e-300)) {}
 
   /// False where a sample between cannot be had. Then low() and high() enclose the change.
   bool locate() {
-    for (int k = 0; k < thresholds::most_bisections && high_.s - low_.s > accuracy_; ++k) {
+    for (int k = 0; k < most_crossing_steps && high_.s - low_.s > accuracy_; ++k) {
       SpectrumSample trial;
       trial.s = 0.5 * (low_.s + high_.s);
       if (k % 3 != 2) {
@@ -157,7 +158,7 @@ std::vector<SpectrumCrossing> find_crossings(const SpectrumAt& at, const Spectru
     if (from.s >= high.s) break;
   }
   complete = from.is_like(high);
-  return merged(found, thresholds::negligible * (high.s - low.s));
+  return merged(found, same_crossing * (high.s - low.s));
 }
 
 bool find_hidden_change(const SpectrumAt& at, const SpectrumSample& a, const SpectrumSample& b, const SpectrumSample& c,

@@ -13,13 +13,13 @@ namespace catena {
 namespace {
 
 // Residual forces below this part of the largest force count as none.
-constexpr double negligible_part = 1e-7;
+constexpr double negligible_part = 1e-7, balance_rounding = thresholds::carried_rounding;
 
 }  // namespace
 
 Report assemble_for_statics(StaticSystem& system, std::vector<double>& q) {
   system.move_to(q);
-  if (system.phi_norm() <= std::max(thresholds::solved, 10 * system.rounding_change())) return {};
+  if (system.phi_norm() <= std::max(thresholds::assembled, 10 * system.rounding_change())) return {};
   Assembler assembler(system.evaluator());
   const Report report = assembler.assemble(q);
   system.move_to(q);
@@ -62,8 +62,7 @@ Imbalance balance_loads(StaticSystem& system, std::span<double> lambda) {
       left.force = force;
       left.column = c;
     }
-    left.rounding =
-        std::max(left.rounding, thresholds::carried_rounding * std::abs(forces[at(c)]) / arm(c) * system.extent());
+    left.rounding = std::max(left.rounding, balance_rounding * std::abs(forces[at(c)]) / arm(c) * system.extent());
     double own = std::abs(system.gradient()[at(c)]);
     for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
       own = std::max(own, std::abs(system.jacobian()[at(k)] * lambda[at(plan.jacobian.row_index[at(k)])]));

@@ -14,6 +14,8 @@ namespace {
 // the largest; a value below a few hundred of these roundings cannot be distinguished from zero. Of coordinates far
 // from the origin the last digits are unknown.
 constexpr double stiffness_rounding = 2e-13;
+// Levers below this part of the length scale are rounding of places.
+constexpr double rounding_of_arm = 1e-9;
 
 /// What the equations hold every body with: the sum of the sizes of their forces, N.
 std::vector<double> forces_of_equations(const StaticSystem& system, std::span<const double> lambda) {
@@ -67,8 +69,7 @@ std::vector<double> body_arms(StaticSystem& system, std::span<const double> lamb
     most = std::max(most, std::abs(value));
   });
   for (std::size_t b = 0; b < arms.size(); ++b) {
-    // Shorter levers are rounding of places.
-    if (arms[b] < thresholds::negligible * system.length()) arms[b] = 0;
+    if (arms[b] < rounding_of_arm * system.length()) arms[b] = 0;
     if (!(arms[b] > 0) && pushing[b] > 0) arms[b] = std::sqrt(turning[b] / pushing[b]);
     if (!(arms[b] > 0)) arms[b] = system.length();
   }

@@ -23,7 +23,11 @@ namespace {
 
 // Steps of the parameter that are tried until its effect on K exceeds rounding.
 constexpr double steps[] = {1, 1e6, 1e12};
+constexpr double visible_effect = 1e-6, smallest_effect = 1e-12;
 constexpr int most_refinements = 20;
+constexpr double linear_part = 1e-9;
+// Constraints met to this, in length scales or rad, do not depend on the parameter.
+constexpr double kept_place = 1e-9;
 constexpr const char* moved_by_load =
     "the load moves the equilibrium: these are estimates of linear buckling theory; an analysis of type path finds the "
     "critical points on the way";
@@ -110,8 +114,7 @@ Report Buckling::place_load(double p, std::vector<double>& lambda) {
   if (outside_) {
     return {Status::refused, fmt::format("the scene does not allow the value {:.6g} of the parameter", p), {}};
   }
-  // Constraints that are met do not depend on the parameter.
-  if (system_.phi_norm() > thresholds::negligible) {
+  if (system_.phi_norm() > kept_place) {
     return {Status::refused,
             "the parameter moves constraints, so that the configuration cannot be kept; an analysis of type path "
             "follows it",
@@ -155,8 +158,7 @@ Report Buckling::find_with(double step, int count, std::vector<Load>& loads, dou
   for (int k : largest_ones(lanczos.theta(), found)) {
     const double theta = lanczos.theta()[at(k)];
     effect = std::max(effect, std::abs(theta));
-    if (std::abs(theta) > thresholds::solved * std::max(1.0, effect))
-      loads.push_back({step / theta, lanczos.vector(k)});
+    if (std::abs(theta) > smallest_effect * std::max(1.0, effect)) loads.push_back({step / theta, lanczos.vector(k)});
   }
   return {};
 }
@@ -238,7 +240,7 @@ Report Buckling::find_by_lanczos(std::vector<Load>& loads, const std::function<b
   for (double step : steps) {
     step *= std::max(std::abs(options_.present), 1.0);
     if (Report pass = find_with(step, options_.count, loads, effect, go_on); !pass.ok()) return pass;
-    if (effect > thresholds::same_value) break;
+    if (effect > visible_effect) break;
   }
   if (loads.empty()) return {};
   // Again with the load itself as the step: rounding is least there, and a parameter that does not enter linearly is
@@ -253,7 +255,7 @@ Report Buckling::find_by_lanczos(std::vector<Load>& loads, const std::function<b
       if (k >= again.size()) break;
       for (std::size_t other = k; other < std::min(again.size(), loads.size()); ++other) {
         linear = linear && std::abs(again[other].distance - loads[other].distance) <=
-                               thresholds::negligible * std::abs(loads[other].distance);
+                               linear_part * std::abs(loads[other].distance);
       }
       if (linear) {
         loads = again;

@@ -25,7 +25,6 @@
 
 #include "catena/analysis/run/analysis_report.hpp"
 #include "catena/analysis/run/system_state.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
 #include "catena/analysis/stability/path_system.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
@@ -55,7 +54,7 @@ struct BucklingReport : AnalysisReport {
 class Buckling {
  public:
   /// Part of a load's distance that Lanczos' method, repeated where the load is, leaves of it.
-  static constexpr double refined_load = thresholds::solved;
+  static constexpr double refined_load = 1e-12;
 
   /// `model`: at options.present.
   Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options);

@@ -13,7 +13,6 @@
 #include <limits>
 
 #include "catena/analysis/run/energyless_forces.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/circulatory_words.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
@@ -120,7 +119,7 @@ class Buckling::CirculatorySearch {
   bool find_first_step() {
     FirstLoadStep first(buckling_.options_.present);
     double change = 0;
-    for (int k = 0; k < thresholds::most_bisections; ++k) {
+    for (int k = 0; k < FirstLoadStep::most_trials; ++k) {
       step_ = first.step();
       if (!std::isfinite(step_)) break;
       CirculatoryModes there;

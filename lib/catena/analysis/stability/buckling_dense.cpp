@@ -11,8 +11,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/stability/buckling.hpp"
@@ -24,6 +24,15 @@ namespace {
 
 // Rounding of a stiffness with its multipliers, in parts of the largest.
 constexpr double stiffness_rounding = thresholds::sum_rounding;
+// Deviation from a straight line that counts as rounding.
+constexpr double straight = 1e-10;
+// How far loads are looked for, in first steps: one beyond would be 1e8 times a value that already changes the
+// stiffness visibly.
+constexpr double farthest = 1e8;
+// Accuracy of a load, relative to its distance.
+constexpr double located = 1e-14;
+// Loads in closed form are accurate to 1e-16 of the steepest rate of change: used up to this multiple of its inverse.
+constexpr double well_known = 1e3;
 // Half width, in parts of the distance, of the bracket that confirms a load in closed form.
 constexpr double confirming = 1e-5;
 
@@ -164,7 +173,7 @@ class Buckling::Search {
   Report find_first_step() {
     const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(freedoms_, freedoms_);
     FirstLoadStep first(present_);
-    for (int k = 0; k < thresholds::most_bisections; ++k) {
+    for (int k = 0; k < FirstLoadStep::most_trials; ++k) {
       step_ = first.step();
       if (!spectrum_.evaluate(present_ + side_ * step_)) {
         if (!buckling_.outside_) return spectrum_.report();
@@ -189,7 +198,7 @@ class Buckling::Search {
   bool find_in_closed_form() {
     const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(freedoms_, freedoms_);
     const Eigen::MatrixXd slope = (spectrum_.now() - unit) / (side_ * step_);
-    const double none = thresholds::poorly_solved * change_ + spectrum_.rounding();
+    const double none = straight * change_ + spectrum_.rounding();
     const auto is_on_line = [&](double distance) {
       return spectrum_.evaluate(present_ + distance) &&
              (spectrum_.now() - unit - distance * slope).cwiseAbs().maxCoeff() <= none;
@@ -214,8 +223,7 @@ class Buckling::Search {
       // Outside what the scene allows there are no loads.
       if (mu_a.size() > 0 && mu_b.size() > 0) {
         const std::size_t before = roots_.size();
-        // Loads in closed form are accurate to 1e-16 of the steepest rate of change.
-        look_between(a, mu_a, b, mu_b, std::abs(distances[k]) * steepest < 1 / thresholds::slight ? distances[k] : 0);
+        look_between(a, mu_a, b, mu_b, std::abs(distances[k]) * steepest < well_known ? distances[k] : 0);
         confirmed = roots_.size() - before >= end - k;
       }
       k = end;
@@ -231,9 +239,7 @@ class Buckling::Search {
       s.mu = {Eigen::VectorXd::Ones(freedoms_)};
     }
     Report outcome;
-    // Loads are looked for so many first steps away: one beyond would be 1e8 times a value that already changes the
-    // stiffness visibly.
-    for_each_distance(step_, 1 / thresholds::half_the_digits, [&](double reach) {
+    for_each_distance(step_, farthest, [&](double reach) {
       if (go_on_ && !go_on_()) {
         outcome = cancelled();
         return false;
@@ -299,10 +305,12 @@ class Buckling::Search {
                                  const Eigen::VectorXd& mu_c) {
     const int k = static_cast<int>((mu_b.array() < 0).count());
     if (k == mu_b.size() || mu_a[k] < 0 || mu_c[k] < 0 || mu_b[k] >= mu_a[k] || mu_b[k] >= mu_c[k]) return {};
+    // Golden section, ended by the first value below zero.
+    constexpr double part = thresholds::golden_part;
     double middle = mu_b[k];
     for (int step = 0; step < 60 && std::abs(c - a) > 1e-9 * std::abs(b); ++step) {
       const bool right = std::abs(c - b) > std::abs(b - a);
-      const double x = right ? b + thresholds::golden_part * (c - b) : b - thresholds::golden_part * (b - a);
+      const double x = right ? b + part * (c - b) : b - part * (b - a);
       const Eigen::VectorXd mu = spectrum_.values(present_ + x);
       if (mu.size() == 0) return {};
       if (mu[k] < 0) return x;
@@ -320,8 +328,7 @@ class Buckling::Search {
   // The root of mu_k between a and b, of opposite signs there: regula falsi that halves the stale side, and bisection
   // every third time.
   double locate(int k, double a, double mu_a, double b, double mu_b) {
-    for (int step = 0; step < 200 && std::abs(b - a) > thresholds::sum_rounding * std::max(std::abs(a), std::abs(b));
-         ++step) {
+    for (int step = 0; step < 200 && std::abs(b - a) > located * std::max(std::abs(a), std::abs(b)); ++step) {
       double x = step % 3 == 2 ? 0.5 * (a + b) : a + (b - a) * mu_a / (mu_a - mu_b);
       if (x == a || x == b) x = 0.5 * (a + b);
       if (x == a || x == b) break;

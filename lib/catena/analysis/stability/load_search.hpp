@@ -10,15 +10,14 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
-
 namespace catena {
 
 class FirstLoadStep {
  public:
+  /// Of steps: their search, by factors and then by halving, has ended before.
+  static constexpr int most_trials = 100;
   /// A change below this part is none.
-  static constexpr double no_change = thresholds::poorly_solved;
+  static constexpr double no_change = 1e-11;
 
   explicit FirstLoadStep(double present) : step_(present != 0 ? 0.1 * std::abs(present) : 1) {}
 
@@ -51,7 +50,7 @@ class FirstLoadStep {
   // In parts of the stiffness or the spectrum.
   static constexpr double least_change = 0.02, most_change = 0.5;
   // Factors by which the step is looked for.
-  static constexpr double coarse = 1 / thresholds::slight, fine = 4;
+  static constexpr double coarse = 1e3, fine = 4;
 
   double step_, too_small_ = 0, too_large_ = std::numeric_limits<double>::infinity();
 };
@@ -71,8 +70,9 @@ void for_each_distance(double first_step, double farthest, F&& f) {
 /// Whether load `a` is told before load `b`: the nearer one, of two that lie equally far the positive one.
 template <class Load>
 bool comes_first(const Load& a, const Load& b) {
+  constexpr double equally_far = 1e-12;  // loads are located to 1e-14 of their distance
   const double near = std::abs(std::abs(a.distance) - std::abs(b.distance));
-  if (near <= thresholds::solved * std::abs(a.distance)) return a.distance > b.distance;
+  if (near <= equally_far * std::abs(a.distance)) return a.distance > b.distance;
   return std::abs(a.distance) < std::abs(b.distance);
 }
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/spectrum_crossings.hpp"
 #include "catena/analysis/stability/path_critical.hpp"
@@ -16,6 +15,8 @@
 namespace catena {
 namespace {
 
+// Part of s beside a critical point at which the path's direction is looked at.
+constexpr double beside_point = 1e-6;
 // Steps of inverse iteration for a left null vector.
 constexpr int left_vector_steps = 4;
 
@@ -95,9 +96,8 @@ std::vector<CriticalPoint> find_circulatory_points(PathSystem& system, const Pat
     critical.omega = crossing.flutter ? std::sqrt(std::max(crossing.omega2, 0.0)) : 0;
     critical.modes = std::abs(crossing.flutter ? crossing.pairs : crossing.values);
     if (!crossing.flutter) {
-      // Beside a critical point, in parts of s, the path's direction is looked at.
-      const double before = points.parameter_part(std::max(crossing.s - thresholds::same_value * step.s, 0.0));
-      const double after = points.parameter_part(std::min(crossing.s + thresholds::same_value * step.s, step.s));
+      const double before = points.parameter_part(std::max(crossing.s - beside_point * step.s, 0.0));
+      const double after = points.parameter_part(std::min(crossing.s + beside_point * step.s, step.s));
       critical.branch = crosses_another(system, critical.point, system.left_null_vector(), before, after);
     }
     critical.mode = std::move(crossing.mode);

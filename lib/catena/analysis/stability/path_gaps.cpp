@@ -22,6 +22,14 @@
 namespace catena {
 namespace {
 
+// Faults (static_active_set.hpp) below the first are rounding of a point that is solved; the place of a change is
+// located until the largest is below the second, and all above its negative change there.
+constexpr double no_fault = 1e-10, located_fault = 1e-12, changes_too = 1e-9;
+// Of the place of a change: a bracket shorter than this is rounding.
+constexpr double shortest_bracket = 1e-14;
+// Part of the parameter's range by which the path is followed to see to which side a gap opens: its effect on a gap is
+// above rounding, the bend of the path below it.
+constexpr double look_ahead = 1e-6;
 // How often sets may change without a step between, besides once each.
 constexpr int most_changes_here = 4;
 
@@ -39,16 +47,14 @@ bool Path::March::change_within(PathPoint& next, double& s, bool& located) {
   changing_.clear();
   static_cast<void>(largest_fault(next));
   for (std::size_t k = 0; k < faults_.size(); ++k) {
-    // Smaller faults (static_active_set.hpp) are rounding of a point that is solved.
-    if (faults_[k] > thresholds::poorly_solved) changing_.push_back(k);
+    if (faults_[k] > no_fault) changing_.push_back(k);
   }
   if (changing_.empty()) return false;
   double low = 0, high = s, high_fault = largest_fault(next), low_fault = largest_fault(x_), fault = low_fault;
   PathPoint point = x_;
   s = 0;
   // What touched at the present point, without force, may be about to change there.
-  for (int k = 0;
-       k < thresholds::most_bisections && fault < -thresholds::solved && high - low > thresholds::sum_rounding * high;
+  for (int k = 0; k < thresholds::most_bisections && fault < -located_fault && high - low > shortest_bracket * high;
        ++k) {
     double trial = low + (high - low) * low_fault / (low_fault - high_fault);
     if (k % 3 == 2) trial = 0.5 * (low + high);
@@ -58,7 +64,7 @@ bool Path::March::change_within(PathPoint& next, double& s, bool& located) {
       return false;
     }
     const double there = largest_fault(found);
-    if (there > thresholds::solved) {
+    if (there > located_fault) {
       high = trial;
       high_fault = there;
       continue;
@@ -68,7 +74,7 @@ bool Path::March::change_within(PathPoint& next, double& s, bool& located) {
     point = std::move(found);
   }
   fault = largest_fault(point);
-  std::erase_if(changing_, [&](std::size_t k) { return faults_[k] < fault - thresholds::negligible; });
+  std::erase_if(changing_, [&](std::size_t k) { return faults_[k] < fault - changes_too; });
   next = std::move(point);
   return true;
 }
@@ -107,8 +113,7 @@ Report Path::March::change_gaps() {
   // To which side each of them holds.
   static_cast<void>(largest_fault(x_));
   const std::vector<double> here = faults_;
-  // So far along the parameter's range the effect on a gap is above rounding, and the bend of the path below it.
-  static_cast<void>(largest_fault(system_.advanced(x_, direction_, thresholds::same_value)));
+  static_cast<void>(largest_fault(system_.advanced(x_, direction_, look_ahead)));
   int holds = 0, fails = 0;
   for (const std::size_t k : changing_) (faults_[k] < here[k] ? holds : fails) += 1;
   changing_.clear();

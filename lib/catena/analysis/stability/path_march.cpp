@@ -5,17 +5,27 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
+// Where no longer step can be made the path ends; in the units of options.arc.
+constexpr double shortest_step = 1e-9;
+// Steps shorter than this part of the usual one are kept though a critical point in them could not be located.
+constexpr double unlocated_step = 1e-4;
 // Iterations after which the next step is shorter, and up to which it may be longer.
 constexpr int many_iterations = 7, few_iterations = 4;
 // The cosine between the directions at both ends of a step, at least.
 constexpr double largest_bend = 0.9;
+// Rad: what a path may turn to one side and back between two points without being looked at more closely.
+constexpr double unseen_turn = 1e-3;
+constexpr int most_end_trials = 60;
+// How far the end may be from where the tangent meets it, in parts of the way.
+constexpr double largest_miss = 0.3;
+// A step that would leave less than this part of itself to the end goes to the end: a whole number of equal steps
+// misses it by rounding, and no step is as short as what is left then.
+constexpr double nearly_there = 1e-3;
 
 }  // namespace
 
@@ -42,7 +52,7 @@ Report Path::March::run(PathReport& report) {
       return {Status::step_too_small,
               fmt::format("the path could not be followed beyond {:.10g}: no solution even {:.1g} further on; likely "
                           "cause: it ends there, at a position that cannot be passed",
-                          x_.p, thresholds::negligible),
+                          x_.p, shortest_step),
               {}};
     }
   }
@@ -107,8 +117,7 @@ bool Path::March::is_smooth(const PathPoint& next, const PathPoint& direction) c
   for (std::size_t c = 0; c < travel.q.size(); ++c) travel.q[c] -= way * direction_.q[c];
   travel.p -= way * direction_.p;
   const double turn = std::acos(std::min(system_.product(direction, direction_), 1.0));
-  // So much (rad) a path may turn to one side and back between two points without being looked at more closely.
-  return std::sqrt(system_.product(travel, travel)) <= way * (turn + thresholds::slight);
+  return std::sqrt(system_.product(travel, travel)) <= way * (turn + unseen_turn);
 }
 
 // The end itself where the prediction reaches it; false if it is not near the prediction: the path bends before it.
@@ -125,8 +134,7 @@ bool Path::March::step_to_end(PathPoint& next, double& s) {
     travel.q[at(c)] = point.q[k] - x_.q[k];
     miss.q[at(c)] = point.q[k] - predicted.q[k];
   }
-  // So far, in parts of the way, the end may be from where the tangent meets it.
-  if (std::sqrt(system_.product(miss, miss)) > thresholds::clearly_less * reach) return false;
+  if (std::sqrt(system_.product(miss, miss)) > largest_miss * reach) return false;
   next = std::move(point);
   next.p = to_;
   s = system_.product(travel, direction_);
@@ -135,7 +143,7 @@ bool Path::March::step_to_end(PathPoint& next, double& s) {
 
 bool Path::March::find_end(PathPoint& next, double& s) {
   double low = 0, high = s, low_gap = x_.p - to_, high_gap = next.p - to_;
-  for (int k = 0; k < thresholds::most_bisections && high - low > 1e-13; ++k) {
+  for (int k = 0; k < most_end_trials && high - low > 1e-13; ++k) {
     double trial = low + (high - low) * low_gap / (low_gap - high_gap);
     if (k % 3 == 2) trial = 0.5 * (low + high);
     PathPoint point = system_.advanced(x_, direction_, trial);
@@ -160,9 +168,8 @@ bool Path::March::find_end(PathPoint& next, double& s) {
 
 bool Path::March::find_next(Trial& trial) {
   trial = {system_.advanced(x_, direction_, length_), length_, false, 0};
-  // A whole number of equal steps misses the end by rounding, and no step is as short as what is left then.
   trial.last =
-      passes_end(x_.p, x_.p + (1 + thresholds::slight) * (trial.point.p - x_.p)) && step_to_end(trial.point, trial.s);
+      passes_end(x_.p, x_.p + (1 + nearly_there) * (trial.point.p - x_.p)) && step_to_end(trial.point, trial.s);
   if (!trial.last) {
     trial.iterations = system_.correct(trial.point, x_, direction_, length_);
     if (trial.iterations < 0) return false;
@@ -178,7 +185,7 @@ bool Path::March::find_next(Trial& trial) {
 Path::March::Progress Path::March::step() {
   system_.forget_refused_value();
   unjudged_.reset();
-  while (length_ > thresholds::negligible) {
+  while (length_ > shortest_step) {
     Trial trial;
     if (!find_next(trial)) {
       length_ *= 0.5;
@@ -206,8 +213,7 @@ Path::March::Progress Path::March::step() {
       bool complete = false;
       const std::vector<CriticalPoint> critical =
           find_critical_points(system_, {x_, direction_, trial.s, modes_, modes}, complete);
-      // Steps shorter than this part of the usual one are kept though a critical point in them could not be located.
-      if (!complete && length_ > thresholds::smallest_factor * options_.arc) {
+      if (!complete && length_ > unlocated_step * options_.arc) {
         // Modes that change without a critical point in between: the step went astray, onto another path.
         length_ *= 0.5;
         continue;

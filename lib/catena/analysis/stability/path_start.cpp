@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "catena/analysis/balance/static_holding.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/analysis/stability/path_march.hpp"
@@ -16,15 +15,18 @@
 namespace catena {
 namespace {
 
+// Parts of the parameter's range; see the header.
+constexpr double beside = 1e-3;
+
 /// The step along the path that begins beside x, before it (side -1) or behind it (1) in the sense of `direction`, and
 /// leads across x as far again.
 std::optional<CriticalStart> step_across(PathSystem& system, const PathPoint& x, const PathPoint& direction,
                                          double side) {
-  PathPoint from = system.advanced(x, direction, side * thresholds::slight);
+  PathPoint from = system.advanced(x, direction, side * beside);
   // With the multipliers of x its stiffness would still be that at x: none.
   if (!system.move_to(from)) return {};
   balance_loads(system.statics(), from.lambda);
-  if (system.correct(from, x, direction, side * thresholds::slight) < 0 || !system.factorize(from)) return {};
+  if (system.correct(from, x, direction, side * beside) < 0 || !system.factorize(from)) return {};
   const std::optional<PathStability> modes_there = system.stability();
   if (!modes_there) return {};
   const PathPoint outwards = system.tangent(from, system.along_parameter(side * direction.p));

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/statics/solvers/static_settling.hpp"
 #include "catena/base/at.hpp"
@@ -15,11 +13,14 @@ namespace {
 // Steps are shortened from seven iterations on (path_march.cpp): one that needs twelve is too long.
 constexpr int most_iterations = 12;
 // Solved: residual forces in parts of the largest force, constraints in length scales, the place on the path.
-constexpr double solved = thresholds::carried_rounding, place_solved = thresholds::solved;
+constexpr double solved = 1e-13, place_solved = 1e-12;
 // Accepted where rounding prevents a smaller residual.
-constexpr double nearly_solved = thresholds::negligible;
+constexpr double nearly_solved = 1e-9;
 // Steps larger than this have left the path: parts of the mechanism's extent, or rad.
 constexpr double astray = 3;
+// Of a step of central differences, in parts of the parameter: near the third root of epsilon, 6e-6, rounding and the
+// third derivative make errors of one size.
+constexpr double difference = 1e-5;
 
 }  // namespace
 
@@ -122,7 +123,7 @@ void PathSystem::residual(const PathPoint& x, std::vector<double>& out) {
 void PathSystem::parameter_derivative(const PathPoint& x, std::vector<double>& derivative) {
   derivative.resize(given_.size());
   PathPoint beside = x;
-  const double h = thresholds::difference * std::max(scale_, std::abs(x.p));
+  const double h = difference * std::max(scale_, std::abs(x.p));
   // One-sided where the scene ends.
   beside.p = x.p + h;
   if (!move_to(beside)) move_to(beside = x);
@@ -236,7 +237,7 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
 bool PathSystem::find_newton_step(const PathPoint& x, const PathPoint& t, double place, double& dp) {
   // The difference is one-sided: it affects the convergence only.
   PathPoint beside = x;
-  beside.p += thresholds::difference * std::max(scale_, std::abs(x.p));
+  beside.p += difference * std::max(scale_, std::abs(x.p));
   if (move_to(beside)) {
     residual(beside, derivative_);
     for (std::size_t i = 0; i < derivative_.size(); ++i)

@@ -33,7 +33,7 @@ std::string first_names(const Evaluator& evaluator, std::span<const char> marked
 /// Assembles with a plan that has no gaps, if the place does not meet the constraints already.
 Report assemble_without_gaps(StaticSystem& system, std::vector<double>& q) {
   system.move_to(q);
-  if (system.phi_norm() <= std::max(thresholds::solved, 10 * system.rounding_change())) return {};
+  if (system.phi_norm() <= std::max(thresholds::assembled, 10 * system.rounding_change())) return {};
   Evaluator& evaluator = system.evaluator();
   PlanOptions options;
   options.released_elements = evaluator.model().gaps();

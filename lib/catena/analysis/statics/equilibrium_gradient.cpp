@@ -4,10 +4,18 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
-
 namespace catena {
+namespace {
+
+// Refined until a correction is this part of the solution, or no longer a tenth of the one before: each gains the
+// digits that the regularisation leaves (kkt_matrix.hpp), seven to ten.
+constexpr double refined = 1e-14, least_progress = 0.1;
+constexpr int most_refinements = 6;
+// Of corrections that no longer fall: what is left is rounding x condition, or the factors are of another matrix.
+constexpr double rough = 1e-9;
+
+}  // namespace
+
 EquilibriumGradient::EquilibriumGradient(Equilibrium& rest)
     : system_(rest.system()), q_(rest.q()), lambda_(rest.lambda()), neutral_(rest.is_neutral()) {
   if (!rest.is_solved()) throw std::invalid_argument("gradient of an equilibrium: it is not solved");
@@ -71,9 +79,8 @@ bool EquilibriumGradient::refine() {
   };
   x_ = right_;
   matrix.solve_unrefined(x_, system_.evaluator().counters);
-  // Each correction gains the digits that the regularisation leaves (kkt_matrix.hpp), seven to ten.
   double before = 1;
-  for (int n = 0; n < thresholds::most_refinements; ++n) {
+  for (int n = 0; n < most_refinements; ++n) {
     matrix.multiply(x_, residual_);
     for (std::size_t k = 0; k < x_.size(); ++k) correction_[k] = right_[k] - residual_[k];
     matrix.solve_unrefined(correction_, system_.evaluator().counters);
@@ -81,11 +88,11 @@ bool EquilibriumGradient::refine() {
     const auto change = sizes(correction_), all = sizes(x_);
     if (!std::isfinite(all[0] + all[1])) return false;
     const double part = std::max(all[0] > 0 ? change[0] / all[0] : 0, all[1] > 0 ? change[1] / all[1] : 0);
-    if (part <= thresholds::sum_rounding) return true;
-    if (part > thresholds::a_digit * before) return part <= thresholds::negligible;
+    if (part <= refined) return true;
+    if (part > least_progress * before) return part <= rough;
     before = part;
   }
-  return before <= thresholds::negligible;
+  return before <= rough;
 }
 
 Frame<EquilibriumGradient::Along> EquilibriumGradient::frame(int plan_body) const {

@@ -18,19 +18,20 @@ constexpr int least_starts = 30, starts_each = 15;
 // Displacement of places as a part of that of angles times the length scale. Where bodies turn angles lead in the first
 // half of the starts; angles may be held, and places what sets equilibria apart.
 constexpr double shaken_places = 0.5, shaken_beside_angles = 0.1;
+// Places closer than this, in extents or rad (whole turns aside), are the same, if their energies are.
+constexpr double same_place = thresholds::same_value, same_energy = 1e-9;
 
 struct Candidate {
   std::vector<double> q, lambda;
   EquilibriumReport report;
 };
 
-// The same places, in extents or rad (whole turns aside), and the same energy.
 bool are_same(const Candidate& a, const Candidate& b, double extent, double energy_size) {
-  if (std::abs(a.report.energy - b.report.energy) > thresholds::negligible * energy_size) return false;
+  if (std::abs(a.report.energy - b.report.energy) > same_energy * energy_size) return false;
   for (std::size_t k = 0; k < a.q.size(); ++k) {
     const double d = a.q[k] - b.q[k];
     const double apart = k % 3 == 2 ? std::remainder(d, 2 * std::numbers::pi) : d / extent;
-    if (std::abs(apart) > thresholds::same_value) return false;
+    if (std::abs(apart) > same_place) return false;
   }
   return true;
 }

@@ -5,12 +5,16 @@
 #include <utility>
 
 #include "catena/analysis/run/far_places.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
+
+// Refinement of the step that is weighed.
+constexpr double step_rounding = 1e-15;
+// Largest remaining change where forces are known only to rounding of stiff springs, length scales or rad.
+constexpr double rounded_change = 1e-9;
 
 // Takes the part along a mode out of the change, in the metric (1, 1, radius^2).
 void take_out(StaticSystem& system, std::span<const double> mode, std::vector<double>& change) {
@@ -59,16 +63,16 @@ bool StaticJudge::is_accurate(std::span<const double> lambda, const Certificate&
   std::vector<double> force(at(system_.plan().columns)), gap(at(system_.plan().rows), 0.0);
   system_.residual(lambda, force);
   for (double& f : force) f = -f;
-  const StaticStep step = system_.solve(force, gap, thresholds::few_roundings);
+  const StaticStep step = system_.solve(force, gap, step_rounding);
   std::vector<double> change(step.change.begin(), step.change.end());
   if (certificate.neutral && !certificate.mode.empty()) take_out(system_, certificate.mode, change);
-  if (system_.change_norm(change) <= thresholds::negligible || certificate.neutral_modes < 2)
-    return system_.change_norm(change) <= thresholds::negligible;
+  if (system_.change_norm(change) <= rounded_change || certificate.neutral_modes < 2)
+    return system_.change_norm(change) <= rounded_change;
   // Of several neutral motions a certificate has one.
   std::optional<FreeMotions> free = find_free_motions(system_, lambda, neutral_part);
   if (!free) return false;
   take_out_all(system_, std::move(free->shapes), change);
-  return system_.change_norm(change) <= thresholds::negligible;
+  return system_.change_norm(change) <= rounded_change;
 }
 
 }  // namespace catena

@@ -21,6 +21,11 @@ constexpr int least_downhill = 200, most_downhill_work = 20'000'000;
 // Newton's method may move the result of another solver by this much, length scales or rad: more is another
 // equilibrium.
 constexpr double largest_polish = 0.05;
+constexpr double rounding_tolerance = 1e-15;
+// Below this interior-point iterations only accumulate rounding: Newton's method does the rest.
+constexpr double finest_barrier = 1e-10;
+// Tolerance of gaps and their forces, whatever the option: the last steps are cheap.
+constexpr double gap_tolerance = 1e-12;
 // Steps that do not converge soon rarely do: more are allowed only after other methods have failed.
 constexpr int few_first_steps = 40, most_first_steps = 80;
 // Constraints that are missed by more than this part of the length were left out of a search: what a search meets it
@@ -58,7 +63,7 @@ StaticOutcome StaticTrial::run_smooth(std::vector<double>& q, std::vector<double
   system_.move_to(q);
   if (way == StaticWay::ipopt || way == StaticWay::nlopt) return optimise(q, lambda, warm, way);
   if (way == StaticWay::settling) return solve_by_settling(system_, q, lambda, {.tolerance = options_.tolerance});
-  if (way == StaticWay::valley && (system_.phi_norm() <= thresholds::solved || assemble(q)))
+  if (way == StaticWay::valley && (system_.phi_norm() <= thresholds::assembled || assemble(q)))
     return solve_by_descent(system_, q, lambda, {.tolerance = options_.tolerance});
   StaticOutcome outcome = solve_by_newton(
       system_, q, lambda, {.tolerance = options_.tolerance, .warm = warm, .stationary = options_.stationary});
@@ -86,7 +91,7 @@ bool StaticTrial::assemble(std::vector<double>& q) {
 // what is found without them misses them: the search begins once more where the sketch is assembled.
 StaticOutcome StaticTrial::optimise_by_nlopt(std::vector<double>& q, std::vector<double>& lambda) {
   std::vector<double> start = q;
-  const bool holds = system_.has_gaps() || system_.phi_norm() <= thresholds::solved;
+  const bool holds = system_.has_gaps() || system_.phi_norm() <= thresholds::assembled;
   StaticOutcome outcome = solve_by_nlopt(system_, q, lambda, {.tolerance = options_.tolerance});
   const bool found = outcome.converged() && system_.phi_norm() <= missed;
   if (holds || found || outcome.end == StaticEnd::cancelled) return outcome;
@@ -104,18 +109,15 @@ StaticOutcome StaticTrial::optimise_by_nlopt(std::vector<double>& q, std::vector
 
 StaticOutcome StaticTrial::optimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way) {
   if (way == StaticWay::nlopt) return optimise_by_nlopt(q, lambda);
-  // Below this interior-point iterations only accumulate rounding: Newton's method does the rest.
-  return solve_by_ipopt(system_, q, lambda,
-                        {.tolerance = std::max(options_.tolerance, thresholds::poorly_solved),
-                         .warm = warm,
-                         .verbose = options_.verbose});
+  return solve_by_ipopt(
+      system_, q, lambda,
+      {.tolerance = std::max(options_.tolerance, finest_barrier), .warm = warm, .verbose = options_.verbose});
 }
 
 StaticOutcome StaticTrial::run_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way,
                                          StaticResult& result) {
-  // Of gaps and their forces, whatever the option: the last steps are cheap.
   const StaticGapOptions exact{.first_steps = result.iterations == 0 ? few_first_steps : most_first_steps,
-                               .tolerance = std::min(options_.tolerance, thresholds::solved)};
+                               .tolerance = std::min(options_.tolerance, gap_tolerance)};
   StaticOutcome outcome;
   if (way == StaticWay::ipopt || way == StaticWay::nlopt) {
     system_.use_gaps();
@@ -146,9 +148,8 @@ StaticOutcome StaticTrial::polish_by_newton(std::vector<double>& q, std::vector<
   KeptPlace found;
   found.keep(system_, q, lambda);
   // To rounding, whatever the tolerance: the steps cost little beside those before.
-  const StaticOutcome polished =
-      solve_by_newton(system_, q, lambda,
-                      {.max_iterations = 20, .tolerance = thresholds::few_roundings, .warm = true, .stationary = true});
+  const StaticOutcome polished = solve_by_newton(
+      system_, q, lambda, {.max_iterations = 20, .tolerance = rounding_tolerance, .warm = true, .stationary = true});
   std::vector<double> change(at(system_.plan().columns));
   for (std::size_t c = 0; c < change.size(); ++c) {
     const std::size_t k = at(system_.plan().coordinate[c]);

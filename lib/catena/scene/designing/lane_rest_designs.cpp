@@ -131,7 +131,7 @@ std::string LaneRestDesigns::prepare(int number, const ParameterSeeds& seeds) {
 }
 
 LaneSet LaneRestDesigns::assemble(LaneSet lanes, std::span<Outcome> outcomes) {
-  const LaneSet far = search_.unmet(lanes, thresholds::solved);
+  const LaneSet far = search_.unmet(lanes, thresholds::assembled);
   for_each_lane(far, [&](int number) {
     Lane& lane = lanes_[at(number)];
     if (Assembler(*lane.evaluator).assemble(lane.q).ok()) {

@@ -14,7 +14,6 @@
 
 #include "catena/analysis/contact/holding/holding_cones.hpp"
 #include "catena/analysis/pose/assemble.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/thresholds.hpp"
@@ -25,12 +24,15 @@
 namespace catena {
 namespace {
 
-// Of the loads: what is left unbalanced by rounding, beside that of the forces. Where places wedge a body the forces
-// grow without bound as friction falls to the least that holds.
-constexpr double balanced = 1e-11;
-// The slopes of joints follow the forces until u falls by no more than rounding, and no oftener than this: each turn
+// Of the loads, and of the forces that balance them: what is left unbalanced by rounding. Where places wedge a body the
+// forces grow without bound as friction falls to the least that holds.
+constexpr double balanced = 1e-11, balanced_of_forces = thresholds::sum_rounding;
+// The slopes of joints follow the forces until u falls by no more than this part, and no oftener than this: each turn
 // leaves a part of the way, about a tenth at most where statics determines all but one force.
+constexpr double turn_gain = 1e-13;
 constexpr int most_turns = 60;
+// Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
+constexpr double most_friction = 1e8;
 
 /// The entries of a vector, or of a matrix column by column.
 template <class M>
@@ -87,7 +89,7 @@ class HoldingTest {
     }
     Eigen::VectorXd sizes(A.cols());
     const double left = nonnegative_least_squares(entries_of(A), entries_of(b_), entries_of(sizes));
-    const bool held = left <= enough_ + thresholds::sum_rounding * sizes.norm();
+    const bool held = left <= enough_ + balanced_of_forces * sizes.norm();
     pressed_.clear();
     for (std::size_t j = 0; j < cones_.joints.size(); ++j) {
       std::array<double, HeldJoint::edges> size{};
@@ -143,8 +145,7 @@ std::optional<double> least_with_slopes(HoldingTest& holds) {
   while (!holds(high)) {
     low = high;
     high *= 4;
-    // Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
-    if (high > 1 / thresholds::half_the_digits) return {};
+    if (high > most_friction) return {};
   }
   while (high - low > 1e-14 * high) {
     const double middle = low + (high - low) / 2;
@@ -161,7 +162,7 @@ std::optional<double> least_from_slopes(HoldingTest& holds) {
     holds(*least);
     holds.press();
     const std::optional<double> next = least_with_slopes(holds);
-    if (!next || *next >= *least * (1 - thresholds::carried_rounding)) break;
+    if (!next || *next >= *least * (1 - turn_gain)) break;
     least = next;
   }
   return least;

@@ -26,8 +26,6 @@
 #include <utility>
 #include <vector>
 
-#include "catena/analysis/run/thresholds.hpp"
-
 namespace catena {
 
 class ContactProblem {
@@ -57,7 +55,7 @@ class ContactProblem {
   /// of the constrained system that D is solved from.
   static constexpr double no_response = 1e-11;
   /// Of the terms of a sum: what is left of none. States that do not fit miss by parts of their loads.
-  static constexpr double rounding_of_sums = thresholds::negligible;
+  static constexpr double rounding_of_sums = 1e-9;
 
   double& D(std::size_t row, std::size_t column) { return d_[row * b.size() + column]; }
   double D(std::size_t row, std::size_t column) const { return d_[row * b.size() + column]; }

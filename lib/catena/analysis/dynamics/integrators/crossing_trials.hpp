@@ -11,8 +11,6 @@
 #include <cmath>
 #include <optional>
 
-#include "catena/analysis/run/margins.hpp"
-
 namespace catena {
 
 /// Ratios of pivots of a step: at its start, the smallest of its stages, at its end.
@@ -23,7 +21,8 @@ struct StepRatios {
   bool pass() const { return smallest < passed * end; }
 
  private:
-  static constexpr double passed = thresholds::clearly_less;
+  // Of the ratio at the end: a stage that is so much nearer to the position lies before it, or it is passed.
+  static constexpr double passed = 0.3;
 };
 
 class CrossingTrials {

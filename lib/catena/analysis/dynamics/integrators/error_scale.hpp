@@ -83,8 +83,10 @@ class ErrorScale {
   }
   /// The shortest step, s, that may be tried at t: below it time does not advance.
   double smallest_step(double t) const {
+    // Some 450 epsilon of the time: its stages still lie apart by several roundings.
+    constexpr double part = 1e-13;
     const double moment = rate_ > 0 ? 1 / rate_ : 0;
-    return thresholds::carried_rounding * std::max(std::abs(t), horizon > t ? std::min(moment, horizon - t) : moment);
+    return part * std::max(std::abs(t), horizon > t ? std::min(moment, horizon - t) : moment);
   }
   /// Repeats `error()` where velocities and accelerations at the end of a failed step show a faster mechanism than
   /// known before: at a start where forces only begin to grow they are the only scale. The new rates are kept if the
@@ -147,7 +149,7 @@ class ErrorScale {
 
   // In tolerances of a step, of which the balance may miss some 5000; steps add up.
   static constexpr double work_part = 100;
-  static constexpr double brief_run = 200, least_tolerance = thresholds::few_roundings;
+  static constexpr double brief_run = 200, least_tolerance = 1e-15;
   double rate_ = 0, root_energy_ = 0, radians_ = 0, tolerance_ = 0;
   double condition_ = 1;
   double force_ = 0, acceleration_ = 0;         // N, and in units: largest of the loads and of what they would do alone

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
@@ -14,8 +13,8 @@ namespace {
 // Times the energy that errors explain: in 60,000 steps the median was 0.1 and the largest 60; steps that lost their
 // way had 1e6.
 constexpr double unexplained = 1000;
-// The least cosine between v1 and u.
-constexpr double least_cosine = 0.1;
+// The least cosine between v1 and u; the largest a u, compared with v1.
+constexpr double least_cosine = 0.1, largest_change = 1e-3;
 
 struct StepEndEnergy {
   double kinetic = 0, potential = 0;
@@ -116,7 +115,7 @@ bool StepEnergy::restore(const Motion& motion, const BalancedStep& step) {
   }
   if (!(std::abs(along) > least_cosine * std::sqrt(2 * after.kinetic * square))) return true;
   const double a = missing / along;
-  if (!(a * a * square < thresholds::slight * thresholds::slight * 2 * after.kinetic)) return true;
+  if (!(a * a * square < largest_change * largest_change * 2 * after.kinetic)) return true;
   for (std::size_t c = 0; c < direction_.size(); ++c) v[c] += a * direction_[c];
   return true;
 }

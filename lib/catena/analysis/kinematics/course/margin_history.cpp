@@ -4,9 +4,15 @@
 #include <cmath>
 
 #include "catena/analysis/kinematics/course/step_rules.hpp"
-#include "catena/analysis/run/margins.hpp"
 
 namespace catena {
+namespace {
+
+// Where a block has no determinant its pivot is used, and must also fall below this part of its largest value so far.
+constexpr double small_part = 0.3;
+
+}  // namespace
+
 void MarginHistory::forget() {
   last_.clear();
   largest_.clear();
@@ -28,8 +34,7 @@ void MarginHistory::take(std::span<const BlockMargin> margins, double t) {
 // A determinant of its own counts at any size; a pivot in its place may be small elsewhere too.
 bool MarginHistory::is_small(std::span<const BlockMargin> margins, std::size_t block) const {
   const BlockMargin& margin = margins[block];
-  // Where a block has no determinant its pivot is used, and must also fall clearly below its largest value so far.
-  return margin.pivot != margin.determinant || std::abs(margin.pivot) < thresholds::clearly_less * largest_[block];
+  return margin.pivot != margin.determinant || std::abs(margin.pivot) < small_part * largest_[block];
 }
 
 bool MarginHistory::heads_for_singularity(double h) const {

@@ -2,8 +2,6 @@
 // (batch/lane_motion.hpp). Angles in rad, other lengths in length scales.
 #pragma once
 
-#include "catena/analysis/run/margins.hpp"
-
 namespace catena::step_rules {
 
 /// A prediction may be off by this angle: the constraints are linear in positions, those of points bend by half its
@@ -12,7 +10,7 @@ inline constexpr double largest_turn = 0.1;
 /// A correction may be this part of the one before: Newton's iteration then stays where it contracts.
 inline constexpr double largest_contraction = 0.25;
 /// No body may turn further in a step: a singular configuration in between could be missed.
-inline constexpr double longest_step = thresholds::longest_turn;
+inline constexpr double longest_step = 0.5;
 /// A given configuration is taken as near to the assembled one if Newton's first correction is at most this large, and
 /// every further one at most `largest_contraction` of the one before.
 inline constexpr double nearby = 0.1;
@@ -22,7 +20,7 @@ inline constexpr double nearby = 0.1;
 /// pivot may be another one than that which vanishes.)
 inline constexpr double sudden_part = 0.6;
 /// The same by extrapolation from the step before: at least this part must be left of it.
-inline constexpr double remaining_part = thresholds::clearly_less;
+inline constexpr double remaining_part = 0.3;
 
 /// The prediction of a node of a bridge (kinematics_bridge.hpp) may be off by this part of the bridge's motion: whether
 /// nodes lie on one branch is tested by the constraints along the polynomial.

@@ -36,6 +36,8 @@ namespace catena {
 inline constexpr double same_place = 1e-4;
 // Of the length scale, for a parameter that is changed by its own size: derivatives that cancel out leave 1e-15.
 inline constexpr double rounding_of_derivatives = 1e-12;
+// Accelerations that differ by less than this part of their size are the same on both sides of an instant.
+inline constexpr double no_jump_of_slopes = 1e-9;
 
 class PhaseEquations {
  public:

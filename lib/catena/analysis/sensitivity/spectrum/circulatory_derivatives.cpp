@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/assembly/design/force_slopes.hpp"
 #include "catena/base/at.hpp"
@@ -33,6 +32,8 @@ constexpr double beside = 1e-7;
 constexpr int most_inverse_rounds = 20;
 // Where two meet: the vectors move by about this part of omega2, and so does what is made of them.
 constexpr double beside_meeting = 1e-11;
+// What the vectors still change by: settled.
+constexpr double settled_vector = 1e-12;
 
 }  // namespace
 
@@ -82,7 +83,7 @@ bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<cons
       change = std::max(change, std::abs(next[c] / largest - w[c]));
       w[c] = next[c] / largest;
     }
-    if (change <= thresholds::solved) return true;
+    if (change <= settled_vector) return true;
   }
   return fail("the vector on the left of its stiffness did not settle");
 }
@@ -98,7 +99,7 @@ bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::spa
     return fail("the vectors of the frequency in which two meet were not found");
   std::vector<double> next(v.size()), multipliers(nu.size());
   double changed = 1;
-  for (int round = 0; round < most_inverse_rounds && changed > thresholds::solved; ++round) {
+  for (int round = 0; round < most_inverse_rounds && changed > settled_vector; ++round) {
     for (const bool of_left : {true, false}) {
       const std::span<double> from = of_left ? v : w, to = of_left ? w : v;
       for (std::size_t c = 0; c < next.size(); ++c) next[c] = weight[c] * from[c];
@@ -115,7 +116,7 @@ bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::spa
       for (std::size_t r = 0; of_left && r < nu.size(); ++r) nu[r] = multipliers[r] / largest;
     }
   }
-  return changed <= thresholds::solved || fail("the vectors of the frequency in which two meet did not settle");
+  return changed <= settled_vector || fail("the vectors of the frequency in which two meet did not settle");
 }
 
 // Forces that only C++ can make show their slopes in no numbers that move with the parameters.

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/base/at.hpp"
 
@@ -14,6 +13,8 @@ namespace {
 constexpr double no_work = 1e-7;
 // Inverse iterations for the null vector: each gains the ratio of the smallest eigenvalue to the next.
 constexpr int iterations = 4;
+// Of the largest stiffness, on the diagonal.
+constexpr double shift = 1e-13;
 
 /// F_p at the place, parameter after parameter: derivatives of [Phi_q^T lambda - Q, Phi] at fixed q and lambda.
 class ResidualDerivatives final : public StateDerivatives {
@@ -72,7 +73,7 @@ std::optional<std::vector<double>> limit_load_gradient(const Evaluator& evaluato
   system.tangent().add_stiffness(here, place.lambda);
   const double largest = system.tangent().largest_stiffness();
   // At the fold itself nothing could be solved; the shift turns the vector by as little.
-  for (int c = 0; c < 3 * plan.moving; ++c) system.add_diagonal(c, thresholds::carried_rounding * largest);
+  for (int c = 0; c < 3 * plan.moving; ++c) system.add_diagonal(c, shift * largest);
   if (!system.factorize()) {
     why = "the equations of the equilibrium cannot be solved";
     return {};

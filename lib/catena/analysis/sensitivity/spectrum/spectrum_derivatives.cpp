@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
+// Forces are in balance if what is left of them is at most this part: what modes take for balance, see modes.cpp.
+constexpr double balanced = 1e-6;
 // Forces that cancel out leave rounding: what this part of the length scale, or of 1 rad, makes of the stiffness.
 constexpr double rounding_of_places = 1e-13;
 
@@ -76,8 +77,7 @@ bool SpectrumDerivatives::is_in_balance() {
     size = std::max(size, std::abs(load));
     if (rest > none) left = std::max(left, rest);
   }
-  // Forces are in balance if what is left of them is at most this part: what modes take for balance, see modes.cpp.
-  return left <= thresholds::same_value * size;
+  return left <= balanced * size;
 }
 
 // The place is an equilibrium, which moves with the parameters.

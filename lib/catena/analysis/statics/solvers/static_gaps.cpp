@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/statics/solvers/static_active_set.hpp"
 #include "catena/base/at.hpp"
 
@@ -14,6 +13,7 @@ namespace {
 // The smoothing begins with one of these, L being the size of the mechanism: where many gaps share a load a large t
 // makes them act from a distance, with a small t their state alternates. It ends when the active set is certain.
 constexpr double first_smoothings[] = {0.1, 0.03, 0.3};
+constexpr double last_smoothing = 1e-8;
 // Steps of t: the first factor, and the one that ends the search.
 constexpr double first_cooling = 0.2, least_cooling = 0.97;
 // A point is solved for a t when the change is below this, length scales or rad, and the residual below this part of t.
@@ -195,7 +195,7 @@ bool SmoothingSearch::next_smoothing(Point point) {
     before_.take_back(system_, q_, lambda_);
     system_.forget_lengths();
   }
-  t_ = std::max(t_before_ * cooling_, 0.5 * thresholds::half_the_digits);
+  t_ = std::max(t_before_ * cooling_, 0.5 * last_smoothing);
   steps_ = 0;
   return true;
 }
@@ -211,7 +211,7 @@ bool SmoothingSearch::make_step(const std::vector<double>& start) {
   if (travel_between(start, q_).is_lost(size_)) return ended(StaticEnd::unbounded);
   const Point point = judge(factor);
   if (point == Point::sought) return true;
-  if (point == Point::too_far || t_ > thresholds::half_the_digits) return next_smoothing(point);
+  if (point == Point::too_far || t_ > last_smoothing) return next_smoothing(point);
   const int smoothed = outcome_.iterations;
   system_.forget_lengths();
   outcome_ = finish_with_gaps(system_, q_, lambda_, set_, options_);

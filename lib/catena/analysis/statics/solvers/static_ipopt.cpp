@@ -7,12 +7,13 @@
 
 #include "catena/analysis/balance/static_hessian.hpp"
 #include "catena/analysis/minimiser/ipopt_program.hpp"
-#include "catena/analysis/run/margins.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
+// Of a start at a singular position: length scales or rad.
+constexpr double smallest_disturbance = 1e-3;
 // Solutions of Ipopt must balance to this part of the forces, and meet the constraints to it.
 constexpr double rough = 1e-5;
 
@@ -115,8 +116,7 @@ class Problem final : public IpoptProgram {
       seed = seed * 1664525u + 1013904223u;
       const double noise = (static_cast<double>(seed >> 8) / (1 << 23) - 1) * unit(c);
       beside[at(plan.coordinate[at(c)])] += 0.1 * noise;
-      // Of a start at a singular position, length scales or rad.
-      near[at(plan.coordinate[at(c)])] += thresholds::slight * noise;
+      near[at(plan.coordinate[at(c)])] += smallest_disturbance * noise;
     }
     std::vector<char> dropped(at(plan.rows), 0);
     const auto dependent_rows = [&](std::span<const double> place) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
@@ -13,14 +12,25 @@ namespace {
 // Changes, in length scales or rad, below which one more correction with the same factors reaches rounding.
 constexpr double polished_change = 1e-4;
 constexpr int polishing_steps = 4;
-// Part of the residual that a correction may leave, and the multiple of rounding of forces that still counts as that.
-constexpr double polishing_part = 1e-2, multiple_of_rounding = 10;
+// Part of the residual that a correction may leave, rounding of forces, and the multiple of it that still counts as
+// rounding.
+constexpr double polishing_part = 1e-2, rounding_part = 1e-15, multiple_of_rounding = 10;
+// Motion of a balanced start under the weights of the first multipliers, length scales or rad: forces are known to
+// first_tolerance, and the weights are forces over the length.
+constexpr double still = 1e-3;
+// Stiffness assumed while the first tensions are found, where there is no load to derive it from, relative to the
+// stiffest spring.
+constexpr double softest_part = 1e-9;
+// Below this no further gain is possible.
+constexpr double last_change = 1e-10;
 // Multipliers beyond this many times the largest applied force, and the sum of all, belong to rows that depend on each
 // other and contradict.
 constexpr double largest_multiplier = 1e7, largest_of_sum = 1e5;
 // Of the linearised equations, relative to the forces and the extent: the error of one step is removed by the next one
 // and by the corrections at the end.
 constexpr double step_tolerance = 1e-7, first_tolerance = 1e-4;
+// A longer step, length scales or rad, is none: the equations are singular.
+constexpr double largest_change = 1e14;
 
 }  // namespace
 
@@ -29,9 +39,7 @@ bool first_multipliers(StaticSystem& system, std::span<double> lambda, bool exac
   if (!system.factorize().ok()) return false;
   StaticStep step = system.newton_step(exact ? 0 : first_tolerance);
   // Where almost nothing would move the forces may balance already, which only exact multipliers show.
-  // A balanced start moves by less under the weights of the first multipliers: forces are known to first_tolerance,
-  // and the weights are forces over the length.
-  if (!exact && system.change_norm(step.change) <= thresholds::slight) step = system.newton_step(0);
+  if (!exact && system.change_norm(step.change) <= still) step = system.newton_step(0);
   std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
   return true;
 }
@@ -40,12 +48,11 @@ bool first_tensions(StaticSystem& system, std::span<double> lambda) {
   std::fill(lambda.begin(), lambda.end(), 0.0);
   system.foresee();
   system.fill(lambda, Curvature::convex, 0);
-  // Where there is no load to derive it from.
-  const double softest = thresholds::negligible * system.matrix().largest_stiffness();
+  const double softest = softest_part * system.matrix().largest_stiffness();
   system.fill(lambda, Curvature::convex, std::max(system.dead_load() / system.length(), softest));
   if (!system.factorize().ok()) return false;
   StaticStep step = system.newton_step(first_tolerance);
-  if (system.change_norm(step.change) <= thresholds::slight) step = system.newton_step(0);
+  if (system.change_norm(step.change) <= still) step = system.newton_step(0);
   std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
   system.foresee(step.change, 1, newton_turn);
   return true;
@@ -59,7 +66,7 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
   const auto size = [&] {
     system.residual(lambda, residual);
     outcome.residual = system.force_norm(residual);
-    return std::max(outcome.residual / (thresholds::few_roundings * force), system.phi_norm() / rounding);
+    return std::max(outcome.residual / (rounding_part * force), system.phi_norm() / rounding);
   };
   double now = size(), before = outcome.step;
   for (int k = 0; k < polishing_steps; ++k) {
@@ -135,7 +142,7 @@ bool NewtonSearch::begin() {
     if (!found) return false;
   }
   near_ = options_.warm || linear_;
-  outcome_.step = 1 / thresholds::sum_rounding;
+  outcome_.step = largest_change;
   measure();
   balanced_ = is_balanced(0);
   return true;
@@ -189,15 +196,13 @@ bool NewtonSearch::returns_from_rounding(double change, double residual_before) 
 // Whether the place is a solution, which is then polished.
 bool NewtonSearch::is_solved(double change) {
   // A residual that looks like rounding of the stiffest spring may be the whole force of a soft one: the step shows it.
-  const auto is_small = [&] {
-    return is_balanced(outcome_.step <= thresholds::poorly_solved ? system_.rounding_force() : 0);
-  };
+  const auto is_small = [&] { return is_balanced(outcome_.step <= last_change ? system_.rounding_force() : 0); };
   balanced_ = is_balanced(0);
   // One step ends a linear problem, whatever its length.
   if (change > polished_change && !(linear_ && outcome_.exact && is_small())) return false;
   polish(system_, q_, lambda_, outcome_);
   force_ = system_.force_scale(lambda_);
-  return is_small() || change <= thresholds::poorly_solved;
+  return is_small() || change <= last_change;
 }
 
 // False: the search ends.
@@ -208,7 +213,7 @@ bool NewtonSearch::step() {
   }
   const StaticStep step = system_.newton_step(near_ ? step_tolerance : first_tolerance);
   const double change = system_.change_norm(step.change);
-  if (!(change < 1 / thresholds::sum_rounding)) {
+  if (!(change < largest_change)) {
     outcome_.end = balanced_ ? StaticEnd::stationary : StaticEnd::diverged;
     return false;
   }

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <vector>
 
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
+
+// An energy this far below the start, in units of force times length, has no bottom.
+constexpr double bottomless = 1e9;
 
 class Problem final : public MinimisationProblem {
  public:
@@ -127,8 +129,7 @@ StaticOutcome solve_by_nlopt(StaticSystem& system, std::span<double> q, std::spa
                           .x_tolerance = options.tolerance,
                           .constraint_tolerance = options.tolerance,
                           .max_evaluations = options.max_evaluations};
-  // An energy this far below the start, in units of force times length, has no bottom.
-  wanted.enough = problem.objective(problem.x, {}) - 1 / thresholds::negligible;
+  wanted.enough = problem.objective(problem.x, {}) - bottomless;
   outcome.end = ending(minimise(problem, wanted, problem.x));
   outcome.iterations = problem.evaluations;
   const std::vector<double>& found = problem.configuration(problem.x);

@@ -5,17 +5,21 @@
 #include <optional>
 
 #include "catena/analysis/balance/static_tangent.hpp"
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
+// Of a step: rad.
+constexpr double settling_turn = 0.5;
 // Of a step, in extents of the scene.
 constexpr double largest_travel = 0.5;
 // Growth of the residual allowed in an accepted step, and the change of the damping from step to step.
 constexpr double tolerated_growth = 3, fastest_fading = 0.05, settling_stiffening = 8;
+// Of the largest stiffness: more damping helps no more, and less is none.
+constexpr double largest_damping = 1e12, least_damping = 1e-14;
+// Without damping no further gain is possible below this, length scales or rad.
+constexpr double settling_last_change = 1e-10;
 
 class Settling {
  public:
@@ -80,16 +84,16 @@ bool Settling::solve() {
 // More damping after a step that failed. False: no more helps.
 bool Settling::stiffen() {
   damping_ = std::max(settling_stiffening * damping_, 1e-6 * stiffness_);
-  return thresholds::solved * damping_ <= stiffness_;
+  return damping_ <= largest_damping * stiffness_;
 }
 
 // Moves by the step in x_, shortened; the size of the residual there. What cannot be a step moves nothing.
 double Settling::move() {
   const std::span<const double> change(x_.data(), residual_.size());
   const auto [turn, travel] = travel_of(system_.plan(), change);
-  factor_ = std::min({1.0, thresholds::longest_turn / turn, largest_travel * extent_ / travel});
+  factor_ = std::min({1.0, settling_turn / turn, largest_travel * extent_ / travel});
   if (!std::isfinite(turn + travel)) return size_;
-  system_.advance(q_, change, factor_, thresholds::longest_turn);
+  system_.advance(q_, change, factor_, settling_turn);
   for (std::size_t r = 0; r < lambda_.size(); ++r) lambda_[r] += factor_ * x_[change.size() + r];
   system_.move_to(q_);
   outcome_.step = system_.change_norm(change);
@@ -102,7 +106,7 @@ double Settling::move() {
 // Rounding of the stiffest spring may be the whole force of a soft one: then the step decides.
 bool Settling::is_balanced() {
   const double scale = std::max(system_.force_scale(lambda_), force_);
-  const double rounding = damping_ == 0 && outcome_.step <= thresholds::poorly_solved ? system_.rounding_force() : 0;
+  const double rounding = damping_ == 0 && outcome_.step <= settling_last_change ? system_.rounding_force() : 0;
   return outcome_.residual <= options_.tolerance * scale + rounding &&
          system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change());
 }
@@ -122,7 +126,7 @@ bool Settling::step() {
   }
   const double ratio = then / std::max(size_, 1e-300);
   damping_ *= factor_ < 1 ? 2 : std::clamp(ratio, fastest_fading, settling_stiffening);
-  if (damping_ < thresholds::sum_rounding * stiffness_) damping_ = 0;
+  if (damping_ < least_damping * stiffness_) damping_ = 0;
   size_ = then;
   if (travel_between(start_, q_).is_lost(extent_)) {
     outcome_.end = StaticEnd::unbounded;

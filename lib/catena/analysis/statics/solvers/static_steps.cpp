@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/margins.hpp"
-#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
+namespace {
+
+// Of the largest stiffness: the first shift, and the growth of the next ones up to one.
+constexpr double first_shift = 1e-9, growth_of_shift = 1e3;
+
+}  // namespace
+
 void KeptPlace::keep(StaticSystem& system, std::span<const double> q_now, std::span<const double> lambda_now) {
   q.assign(q_now.begin(), q_now.end());
   lambda.assign(lambda_now.begin(), lambda_now.end());
@@ -40,7 +45,7 @@ Travel travel_between(std::span<const double> from, std::span<const double> to) 
 }
 
 bool factorize_convex(StaticSystem& system, std::span<const double> lambda) {
-  for (double shift = 0; shift < 1; shift = shift == 0 ? thresholds::negligible : shift / thresholds::slight) {
+  for (double shift = 0; shift < 1; shift = shift == 0 ? first_shift : growth_of_shift * shift) {
     const double stiffness = shift > 0 ? shift * std::max(system.matrix().largest_stiffness(), 1e-300) : 0;
     system.fill(lambda, Curvature::convex, stiffness);
     if (system.factorize().ok()) return true;
