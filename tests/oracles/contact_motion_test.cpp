@@ -20,7 +20,7 @@ TEST(ContactMotion, BallsBounceDownSlopes) {
     const double height = random(0.1, 1), along = random(-1, 1), up = random(-1, 1), s0 = random(-0.5, 0.5);
     const double c = std::cos(slope), s = std::sin(slope);
     // Across the slope: n, along it: w.
-    const double n0 = height, a = g * c, b = g * s;
+    const double n0 = height, a = earth_gravity * c, b = earth_gravity * s;
     std::vector<double> hits;
     double t = 0, n = n0, v = up, v_end = 0;
     for (int k = 0; k < 5; ++k) {
@@ -56,7 +56,7 @@ TEST(ContactMotion, BallsBounceDownSlopes) {
 TEST(ContactMotion, AccumulatedBouncesEndInContact) {
   for (const double e : {0.0, 0.2, 0.5, 0.8, 0.9}) {
     SCOPED_TRACE(e);
-    const double fall = std::sqrt(2 * 0.95 / g), end = fall * (1 + e) / (1 - e);
+    const double fall = std::sqrt(2 * 0.95 / earth_gravity), end = fall * (1 + e) / (1 - e);
     const TextRun run = run_text(
         R"({"catena":1, "gravity":[0,-9.81], "bodies": {"ball": {"particle": true, "mass": 2, "position": [0,1]}},
         "forces": [{"type": "contact", "name": "floor", "i": "ground", "j": "ball", "radius": 0.05, "restitution": )" +
@@ -67,8 +67,8 @@ TEST(ContactMotion, AccumulatedBouncesEndInContact) {
     EXPECT_NEAR(instants(run, "contact").back(), end, 1e-3);
     EXPECT_NEAR(run.last("ball.y"), 0.05, 1e-12);
     EXPECT_NEAR(run.last("ball.vy"), 0, 1e-12);
-    EXPECT_NEAR(run.last("floor.force"), 2 * g, 1e-9);
-    EXPECT_NEAR(run.last("energy.dissipated"), 2 * g * 0.95, 1e-8);
+    EXPECT_NEAR(run.last("floor.force"), 2 * earth_gravity, 1e-9);
+    EXPECT_NEAR(run.last("energy.dissipated"), 2 * earth_gravity * 0.95, 1e-8);
   }
 }
 
@@ -108,7 +108,8 @@ TEST(ContactMotion, CompliantFloorsPressAndRelease) {
     const double mass = random(0.5, 4), k = random(5e3, 1e5), zeta = seed % 3 == 0 ? 0 : random(0.01, 0.3);
     const double height = random(0.05, 0.5), c = 2 * zeta * std::sqrt(k * mass);
     const double omega = std::sqrt(k / mass), delta = zeta * omega, damped = omega * std::sqrt(1 - zeta * zeta);
-    const double fall = std::sqrt(2 * height / g), v0 = -g * fall, rest = -g / (omega * omega);
+    const double fall = std::sqrt(2 * height / earth_gravity), v0 = -earth_gravity * fall,
+                 rest = -earth_gravity / (omega * omega);
     // y(t) = rest + exp(-delta t) (-rest cos + (v0 - delta rest) / damped sin)
     const auto y = [&](double t) {
       const double p = -rest, r = (v0 + delta * p) / damped;
@@ -135,7 +136,7 @@ TEST(ContactMotion, CompliantFloorsPressAndRelease) {
     ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
     EXPECT_NEAR(run.first("ball.y"), y(b / 2), 1e-9);
     EXPECT_NEAR(run.first("contact#1.force"), force(b / 2), 1e-6 * k * height);
-    EXPECT_NEAR(run.last("ball.y"), depth + v * later - g * later * later / 2, 1e-8);
+    EXPECT_NEAR(run.last("ball.y"), depth + v * later - earth_gravity * later * later / 2, 1e-8);
     ASSERT_EQ(instants(run, "contact").size(), 1u);
     ASSERT_EQ(instants(run, "release").size(), 1u);
     EXPECT_NEAR(instants(run, "contact")[0], fall, 1e-9);
@@ -151,7 +152,8 @@ TEST(ContactMotion, StopsLetGo) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     // m y'' = f t - m g from t = m g / f on.
-    const double mass = random(0.5, 3), rate = random(5, 40), leave = mass * g / rate, later = random(0.1, 0.5);
+    const double mass = random(0.5, 3), rate = random(5, 40), leave = mass * earth_gravity / rate,
+                 later = random(0.1, 0.5);
     const double end = leave + later;
     const TextRun run = run_text(
         R"({"catena":1, "gravity":[0,-9.81], "bodies": {"ball": {"particle": true, "mass": )" + text_of(mass) +
@@ -161,7 +163,7 @@ TEST(ContactMotion, StopsLetGo) {
     ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
     ASSERT_EQ(instants(run, "release").size(), 1u);
     EXPECT_NEAR(instants(run, "release")[0], leave, 1e-9);
-    EXPECT_NEAR(run.first("bed.force"), mass * g / 2, 1e-9);
+    EXPECT_NEAR(run.first("bed.force"), mass * earth_gravity / 2, 1e-9);
     EXPECT_NEAR(run.last("ball.y"), rate / mass * std::pow(later, 3) / 6, 1e-9);
   }
 }

@@ -11,7 +11,7 @@
 
 namespace catena::testing {
 
-inline constexpr double g = 9.81;
+inline constexpr double earth_gravity = 9.81;
 
 inline std::vector<double> instants(const TextRun& run, const std::string& kind) {
   std::vector<double> t;

@@ -20,7 +20,7 @@ TEST(ContactMotion, MassesOnSpringsRubToAStop) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     const double mass = random(0.5, 2), k = random(50, 200), mu = random(0.05, 0.3), x0 = random(0.2, 0.5);
-    const double omega = std::sqrt(k / mass), shift = mu * mass * g / k;
+    const double omega = std::sqrt(k / mass), shift = mu * mass * earth_gravity / k;
     double x = x0;
     int halves = 0;
     while (std::abs(x) > shift) x = (x > 0 ? 2 * shift : -2 * shift) - x, ++halves;
@@ -52,8 +52,8 @@ TEST(ContactMotion, WheelsRollOrSlipDownSlopes) {
     const double part = random(0.3, 1), inertia = part * mass * radius * radius, t = 1;
     const double c = std::cos(slope), s = std::sin(slope);
     const bool rolls = s / (1 + 1 / part) <= mu * c;
-    const double way = (rolls ? g * s / (1 + part) : g * (s - mu * c)) * t * t / 2;
-    const double turn = rolls ? -way / radius : -mu * mass * g * c * radius / inertia * t * t / 2;
+    const double way = (rolls ? earth_gravity * s / (1 + part) : earth_gravity * (s - mu * c)) * t * t / 2;
+    const double turn = rolls ? -way / radius : -mu * mass * earth_gravity * c * radius / inertia * t * t / 2;
     const TextRun run = run_text(
         R"({"catena":1, "gravity":[0,-9.81], "bodies": {"wheel": {"mass": )" + text_of(mass) + R"(, "inertia": )" +
         text_of(inertia) + R"(, "position": )" + pair_of(radius * s, radius * c) + R"(}}, "forces": [{"type": "contact",
@@ -64,7 +64,7 @@ TEST(ContactMotion, WheelsRollOrSlipDownSlopes) {
     EXPECT_NEAR(run.last("wheel.x"), radius * s + way * c, 1e-9);
     EXPECT_NEAR(run.last("wheel.y"), radius * c - way * s, 1e-9);
     EXPECT_NEAR(run.last("wheel.angle"), turn, 1e-8);
-    EXPECT_NEAR(run.last("road.force"), mass * g * c, 1e-8);
+    EXPECT_NEAR(run.last("road.force"), mass * earth_gravity * c, 1e-8);
     EXPECT_NEAR(run.last("energy.balance"), 0, 1e-8);
   }
 }
@@ -78,18 +78,19 @@ TEST(ContactMotion, FastWheelsBeginToSlip) {
     const double mass = random(0.5, 20), radius = unit * random(0.1, 0.5), mu = random(0.1, 0.6);
     const double inertia = random(0.3, 1) * mass * radius * radius, slip = random(0.5, 2), t = slip + random(0.1, 1);
     // Rolling: m a = F, J a / R = k t - F R.
-    const double resists = mass * radius + inertia / radius, k = mu * g * unit * resists / slip, after = t - slip;
-    const double v = speed + k * slip * slip / (2 * resists), a = mu * g * unit;
+    const double resists = mass * radius + inertia / radius, k = mu * earth_gravity * unit * resists / slip,
+                 after = t - slip;
+    const double v = speed + k * slip * slip / (2 * resists), a = mu * earth_gravity * unit;
     const double x = speed * slip + k * std::pow(slip, 3) / (6 * resists) + v * after + a * after * after / 2;
     const double omega = -v / radius + (mass * a * radius * after - k * (t * t - slip * slip) / 2) / inertia;
-    const TextRun run =
-        run_text(R"({"catena":1, "gravity":[0,)" + text_of(-g * unit) + R"(], "bodies": {"wheel": {"mass": )" +
-                 text_of(mass) + R"(, "inertia": )" + text_of(inertia) + R"(, "position": )" + pair_of(0, radius) +
-                 R"(, "velocity": )" + pair_of(speed, 0) + R"(, "angular_velocity": )" + text_of(-speed / radius) +
-                 R"(}}, "forces": [{"type": "contact", "name": "road", "i": "ground", "j": "wheel", "mu": )" +
-                 text_of(mu) + R"(, "radius": )" + text_of(radius) + "," + ground_line(0) +
-                 R"(}, {"type": "torque", "i": "wheel", "torque": {"polynomial": [0, )" + text_of(-k) +
-                 R"(]}}], "outputs": ["wheel.x", "wheel.y", "wheel.vx", "wheel.omega"],)" + dynamics({t}));
+    const TextRun run = run_text(
+        R"({"catena":1, "gravity":[0,)" + text_of(-earth_gravity * unit) + R"(], "bodies": {"wheel": {"mass": )" +
+        text_of(mass) + R"(, "inertia": )" + text_of(inertia) + R"(, "position": )" + pair_of(0, radius) +
+        R"(, "velocity": )" + pair_of(speed, 0) + R"(, "angular_velocity": )" + text_of(-speed / radius) +
+        R"(}}, "forces": [{"type": "contact", "name": "road", "i": "ground", "j": "wheel", "mu": )" + text_of(mu) +
+        R"(, "radius": )" + text_of(radius) + "," + ground_line(0) +
+        R"(}, {"type": "torque", "i": "wheel", "torque": {"polynomial": [0, )" + text_of(-k) +
+        R"(]}}], "outputs": ["wheel.x", "wheel.y", "wheel.vx", "wheel.omega"],)" + dynamics({t}));
     ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
     const std::vector<EventEntry> changes = events_of(run);
     ASSERT_EQ(changes.size(), 1U);
@@ -108,7 +109,7 @@ TEST(ContactMotion, BlocksSlideToAStop) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     const double slope = random(-0.3, -0.02), mu = random(0.35, 0.6), speed = random(0.5, 2), mass = random(0.5, 3);
-    const double c = std::cos(slope), s = std::sin(slope), a = g * (mu * c - s), stop = speed / a;
+    const double c = std::cos(slope), s = std::sin(slope), a = earth_gravity * (mu * c - s), stop = speed / a;
     const double w = speed * speed / (2 * a), h = 0.03;
     const TextRun run = run_text(R"({"catena":1, "gravity":[0,-9.81], "bodies": {"block": {"mass": )" + text_of(mass) +
                                  R"(, "inertia": 0.01, "angle": )" + text_of(-slope) + R"(, "position": )" +
@@ -127,7 +128,7 @@ TEST(ContactMotion, BlocksSlideToAStop) {
     EXPECT_NEAR(run.last("block.y"), h * c - w * s, 1e-8);
     EXPECT_NEAR(run.last("block.angle"), -slope, 1e-10);
     // While it slides friction at the bottom tips it forwards: r carries more than l.
-    const double sum = mass * g * c, tip = mu * sum * h / 0.1;
+    const double sum = mass * earth_gravity * c, tip = mu * sum * h / 0.1;
     EXPECT_NEAR(run.first("l.force"), (sum - tip) / 2, 1e-7);
     EXPECT_NEAR(run.first("r.force"), (sum + tip) / 2, 1e-7);
   }
@@ -139,7 +140,8 @@ TEST(ContactMotion, PinsRubWheelsToAStop) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     const double mass = random(1, 20), inertia = random(0.1, 2), mu = random(0.05, 0.3), radius = random(0.005, 0.05);
-    const double omega = random(-20, 20), slowing = mu * mass * g * radius / inertia, stop = std::abs(omega) / slowing;
+    const double omega = random(-20, 20), slowing = mu * mass * earth_gravity * radius / inertia,
+                 stop = std::abs(omega) / slowing;
     const TextRun run = run_text(R"({"catena":1, "gravity":[0,-9.81], "bodies": {"wheel": {"mass": )" + text_of(mass) +
                                  R"(, "inertia": )" + text_of(inertia) + R"(, "angular_velocity": )" + text_of(omega) +
                                  R"(}}, "constraints": [{"type": "revolute",
@@ -151,7 +153,7 @@ TEST(ContactMotion, PinsRubWheelsToAStop) {
     ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
     ASSERT_EQ(instants(run, "stick").size(), 1u);
     EXPECT_NEAR(instants(run, "stick")[0], stop, 1e-9 * stop);
-    EXPECT_NEAR(run.first("rub.friction"), -std::copysign(mu * mass * g * radius, omega), 1e-9);
+    EXPECT_NEAR(run.first("rub.friction"), -std::copysign(mu * mass * earth_gravity * radius, omega), 1e-9);
     EXPECT_NEAR(run.last("wheel.angle"), omega * stop / 2, 1e-8 * std::abs(omega * stop));
     EXPECT_NEAR(run.last("wheel.omega"), 0, 1e-10);
     EXPECT_NEAR(run.last("energy.dissipated"), inertia * omega * omega / 2, 1e-8 * inertia * omega * omega);
@@ -166,7 +168,7 @@ TEST(ContactMotion, BlocksStickAndSlipOnBelts) {
     RandomNumbers random(seed);
     const double mass = random(0.5, 2), k = random(30, 150), mu = random(0.1, 0.3),
                  more = seed % 5 == 0 ? 1 : random(1.1, 2);
-    const double speed = random(0.05, 0.4), omega = std::sqrt(k / mass), centre = mu * mass * g / k;
+    const double speed = random(0.05, 0.4), omega = std::sqrt(k / mass), centre = mu * mass * earth_gravity / k;
     const double loose = more * centre, first = loose / speed;
     const double angle = 2 * M_PI - 2 * std::atan((loose - centre) * omega / speed);
     const double second = first + angle / omega, stuck_at = 2 * centre - loose,
@@ -209,7 +211,7 @@ TEST(ContactMotion, FrictionPassesTheKnotsOfASpline) {
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
   for (std::size_t k = 0; k < 6; ++k) {
     EXPECT_NEAR(1.5 * run.column("b.ax")[k], run.column("f.fx")[k], 1e-10) << k;
-    EXPECT_NEAR(1.5 * (run.column("b.ay")[k] + g), run.column("f.fy")[k], 1e-10) << k;
+    EXPECT_NEAR(1.5 * (run.column("b.ay")[k] + earth_gravity), run.column("f.fy")[k], 1e-10) << k;
     const double vx = run.column("b.vx")[k], vy = run.column("b.vy")[k], v = std::hypot(vx, vy);
     EXPECT_NEAR(run.column("f.slip")[k], v, 1e-10) << k;
     // Coulomb: against the velocity, a tenth of what presses across it.
@@ -231,8 +233,10 @@ TEST(ContactMotion, FrictionGoesOnBeyondTheEndOfASpline) {
     ASSERT_GT(run.column("b.x")[k], 0.3);
     const double vx = run.column("b.vx")[k], vy = run.column("b.vy")[k], v = std::hypot(vx, vy);
     EXPECT_NEAR(run.column("f.slip")[k], v, 1e-10) << k;
-    EXPECT_NEAR(run.column("f.force")[k], 1.5 * g * vx / v, 1e-8) << k;
-    EXPECT_NEAR((run.column("b.ax")[k] * vx + run.column("b.ay")[k] * vy) / v, -g * (vy + 0.1 * vx) / v, 1e-8) << k;
+    EXPECT_NEAR(run.column("f.force")[k], 1.5 * earth_gravity * vx / v, 1e-8) << k;
+    EXPECT_NEAR((run.column("b.ax")[k] * vx + run.column("b.ay")[k] * vy) / v, -earth_gravity * (vy + 0.1 * vx) / v,
+                1e-8)
+        << k;
     EXPECT_NEAR(vy / vx, run.column("b.vy")[0] / run.column("b.vx")[0], 1e-9) << k;
   }
 }
