@@ -224,7 +224,7 @@ TEST(ConstraintSolver, AccelerationsAreThoseOfTheFullSystem) {
 
 TEST(ConstraintSolver, UnequalMassesKeepTheirDigits) {
   int compared = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < 120; ++seed) {
     Linkage linkage(seed, false);
     const VectorXd mass = linkage.weights(4), Q = linkage.any(mass.size());
     ConstraintSolver solver(linkage.plan);

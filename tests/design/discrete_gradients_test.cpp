@@ -286,13 +286,32 @@ TEST(DiscreteGradients, OfADoublePendulumAreThoseOfItsStepsAndOfItsEquations) {
   }
 }
 
+/// Counts the steps whose stages another one wants to see.
+class CountedStages final : public StageWatcher {
+ public:
+  explicit CountedStages(StageWatcher* watcher) : watcher_(watcher) {}
+  bool begin_stages(double from, double to, std::span<const double> y) override {
+    const bool wanted = watcher_->begin_stages(from, to, y);
+    steps += wanted;
+    return wanted;
+  }
+  void watch_stage(int s, double t, Side side, std::span<const double> y, std::span<const double> slope,
+                   EquationsOfMotion& equations) override {
+    watcher_->watch_stage(s, t, side, y, slope, equations);
+  }
+  int steps = 0;
+
+ private:
+  StageWatcher* watcher_;
+};
+
 /// Rows between the ends of steps, by stages that were watched and by recomputed ones: derivatives of places and rates.
 class BothWays final : public RowObserver {
  public:
   BothWays(MotionDerivatives& watching, MotionDerivatives& recomputing)
-      : watching_(watching), recomputing_(recomputing) {}
+      : watching_(watching), recomputing_(recomputing), stages(watching.stage_watcher()) {}
   bool wants_stretches() const override { return true; }
-  StageWatcher* stage_watcher() override { return watching_.stage_watcher(); }
+  StageWatcher* stage_watcher() override { return &stages; }
   bool cover(const MotionStretch& stretch) override {
     watching_.cover(stretch);
     recomputing_.cover(stretch);
@@ -303,24 +322,25 @@ class BothWays final : public RowObserver {
     EXPECT_TRUE(recomputing_.find(snapshot)) << recomputing_.why();
     const auto one = watching_.configuration(0), other = recomputing_.configuration(0);
     for (std::size_t c = 0; c < one.size(); ++c) {
-      for (std::size_t p = 0; p < one[c].d.size(); ++p) {
+      for (std::size_t p = 0; p < one[c].d.size(); ++p)
         EXPECT_NEAR(one[c].d[p], other[c].d[p], 1e-9 * std::max(1.0, std::abs(other[c].d[p]))) << snapshot.t;
-        differ += one[c].d[p] != other[c].d[p];
-      }
     }
     ++rows;
     return true;
   }
-  int rows = 0, differ = 0;
+  int rows = 0;
 
  private:
   MotionDerivatives &watching_, &recomputing_;
+
+ public:
+  CountedStages stages;
 };
 
 // Between the ends of steps, and across instants at which a function of time has a kink and which a parameter moves.
 TEST(DiscreteGradients, OfWatchedStagesAreThoseOfRecomputedOnes) {
   const auto text = [](const std::string& force) {
-    return R"({"catena": 1, "parameters": {"l": 0.7, "m": 1.5, "k": 20, "s": 0.4321}, "bodies": {
+    return R"({"catena": 1, "gravity": [0, -9.81], "parameters": {"l": 0.7, "m": 1.5, "k": 20, "s": 0.4321}, "bodies": {
       "one": {"rod": {"from": [0, 0], "to": ["l", 0]}, "mass": "m"},
       "two": {"rod": {"from": ["l", 0], "to": ["=2*l", 0]}, "mass": 1}},
       "constraints": [{"type": "revolute", "i": "ground", "j": "one.from"},
@@ -343,7 +363,7 @@ TEST(DiscreteGradients, OfWatchedStagesAreThoseOfRecomputedOnes) {
     BothWays observer(watching, recomputing);
     ASSERT_TRUE(motion.run(TimeGrid::range(0, 1.5, 0.03), {.velocity = true}, observer).ok());
     EXPECT_EQ(observer.rows, 51);
-    EXPECT_GT(observer.differ, 0) << "both were recomputed";
+    EXPECT_GT(observer.stages.steps, 5) << "both were recomputed";
   }
 }
 

@@ -62,7 +62,7 @@ inline std::string analysis_of(const Family& family) {
 
 /// Statuses and measures of a sweep in lanes are those of single runs; most good designs stay in their lanes.
 inline void expect_same_as_alone(const Family& family) {
-  constexpr int designs = 40;
+  constexpr int designs = size_of_test(40, 16);
   constexpr std::size_t one_in = size_of_test<std::size_t>(1, 8);  // is run alone
   std::mt19937 random(7);
   std::vector<std::vector<double>> values;
@@ -103,7 +103,7 @@ inline void expect_same_as_alone(const Family& family) {
     }
   }
   EXPECT_GT(good, designs / 4);
-  EXPECT_EQ(good < designs, family.some_fail);
+  EXPECT_TRUE(is_sanitized || (good < designs) == family.some_fail);
   // Those that move stay in their lanes, but for a few that come near to where they lock.
   const auto in_lanes = field<std::int64_t>(sweep, "in_lanes");
   EXPECT_LE(in_lanes, good);
