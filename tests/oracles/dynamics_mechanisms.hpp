@@ -18,10 +18,10 @@
 
 namespace catena::testing {
 
-/// Every method of integration that can be asked for.
-inline constexpr IntegrationMethod all_methods[] = {IntegrationMethod::rk8, IntegrationMethod::rk5,
-                                                    IntegrationMethod::baumgarte, IntegrationMethod::adams,
-                                                    IntegrationMethod::partitioning};
+/// Every method of integration that chooses its steps by a tolerance.
+inline constexpr IntegrationMethod all_methods[] = {IntegrationMethod::rk8,          IntegrationMethod::rk5,
+                                                    IntegrationMethod::baumgarte,    IntegrationMethod::adams,
+                                                    IntegrationMethod::partitioning, IntegrationMethod::radau};
 
 /// n uniform rods in series from the origin along +x, pinned; the last body's far end is the tip.
 inline std::shared_ptr<Model> rod_chain(int n, double length = 1, double mass = 1) {

@@ -36,7 +36,8 @@ IntegrationMethod used_method(const Analysis& analysis) {
 /// Whether this motion, by this method, is made twice.
 inline bool wants_second_run(const AskedMotion& motion, IntegrationMethod method) {
   return motion.changes || method == IntegrationMethod::adams || method == IntegrationMethod::baumgarte ||
-         method == IntegrationMethod::partitioning;
+         method == IntegrationMethod::partitioning || method == IntegrationMethod::radau ||
+         method == IntegrationMethod::rattle;
 }
 
 /// Of analysis.run(), which follows; both must outlive the result, and the columns. `make`: another analysis of the
@@ -54,7 +55,9 @@ std::unique_ptr<RowAccuracy> accuracy_of_motion(Analysis& analysis, const Column
   const auto second = [start = motion.start, grid = motion.grid, coarser = coarser_options(motion.options), make](
                           const Needs& needs, RowObserver& observer, bool by_other_method) {
     DynamicsOptions options = coarser;
-    if (by_other_method)
+    if (by_other_method && options.method == IntegrationMethod::radau)
+      options.tolerance = std::max(options.tolerance / 100, DynamicsOptions::least_tolerance);
+    else if (by_other_method)
       options.method = options.method == IntegrationMethod::rk5 ? IntegrationMethod::rk8 : IntegrationMethod::rk5;
     const auto other = make(options);
     other->start_from(start);

@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/dynamics/implicit/radau.hpp"
+#include "catena/analysis/dynamics/implicit/rattle.hpp"
 #include "catena/analysis/dynamics/integrators/adams.hpp"
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
@@ -18,6 +20,8 @@ constexpr double step_part = 0.002;
 // The same for methods whose errors of steps add up more: those that do not project, and multistep methods; but not
 // below rounding.
 constexpr double finer_part = 0.2, least_step_tolerance = 2e-14;
+// The same of an implicit step, the error of which is of two orders more than its estimate.
+constexpr double implicit_part = 0.3;
 constexpr double least_multistep_tolerance = 1e-11;
 constexpr int least_multistep_bodies = 10;
 // Steps over which the pace of a run is measured.
@@ -122,6 +126,11 @@ std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, doub
     case IntegrationMethod::adams:
       options.tolerance = finer;
       return std::make_unique<Adams>(motion, options);
+    case IntegrationMethod::radau:
+      options.tolerance = implicit_part * options_.tolerance;
+      return std::make_unique<Radau>(motion, options);
+    case IntegrationMethod::rattle:
+      return std::make_unique<Rattle>(motion, options_.step, horizon);
   }
   return std::make_unique<RungeKutta>(motion, options);
 }

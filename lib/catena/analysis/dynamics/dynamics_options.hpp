@@ -14,11 +14,13 @@ enum class IntegrationMethod {
   baumgarte,     ///< Dormand-Prince, order 8, with stabilised constraints in place of projection
   adams,         ///< Adams, orders 1 to 12, with projection
   partitioning,  ///< Dormand-Prince, order 8, of independent coordinates
+  radau,         ///< Radau IIA, order 5, for stiff forces
+  rattle,        ///< of order 2, steps of one length, energy bounded
 };
 
 /// The names used in scenes and results, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 6> integration_methods{"auto",      "rk8",   "rk5",
-                                                                     "baumgarte", "adams", "partitioning"};
+inline constexpr std::array<std::string_view, 8> integration_methods{"auto",  "rk8",          "rk5",   "baumgarte",
+                                                                     "adams", "partitioning", "radau", "rattle"};
 
 inline std::string_view to_string(IntegrationMethod method) {
   return integration_methods[static_cast<std::size_t>(method)];

@@ -54,6 +54,11 @@ Report Dynamics::start() {
   if (method_ == IntegrationMethod::partitioning) {
     if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
   }
+  if (method_ == IntegrationMethod::rattle && !(options_.step > 0)) {
+    return {Status::refused,
+            "method rattle makes steps of one length, which its accuracy follows from: give \"step\", s",
+            {}};
+  }
   work_.account.reset();
   // Where constraints are redundant, parts massless or contacts rub the work is summed up for the check alone.
   const bool rubs = attached_.contacts && attached_.contacts->dissipates();

@@ -46,6 +46,7 @@ class EquationsOfMotion {
                      double stabilisation = 0);
   /// Forces beside those of the model's elements, from now on; nullptr: none.
   void attach(StateLoads* loads) { state_loads_ = loads; }
+  StateLoads* state_loads() { return state_loads_; }
   const StateLoads* state_loads() const { return state_loads_; }
   /// Solves [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [loads; gamma] with the factors at hand.
   void solve_motion(std::span<const double> loads, std::span<const double> gamma, std::span<double> qdd,

@@ -78,7 +78,9 @@ std::vector<AnalysisDescription> describe_all() {
              "integrator: rk8, rk5 (Runge-Kutta) and adams (multistep, fewest evaluations in smooth motions) project "
              "onto "
              "the constraints after every step, baumgarte stabilises them and shows how they drift, partitioning "
-             "integrates independent coordinates; auto takes adams for open chains of ten bodies and more, else rk8",
+             "integrates independent coordinates, radau is implicit, for stiff springs and dampers, rattle keeps the "
+             "energy of long motions with a fixed step; auto takes adams for open chains of ten bodies and more, else "
+             "rk8",
              {},
              {},
              {integration_methods.begin(), integration_methods.end()}},

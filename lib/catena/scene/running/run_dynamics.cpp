@@ -160,6 +160,12 @@ std::string DynamicsTask::conflict() const {
   if (touches_ && context_.checkpoint)
     return "checkpoints do not keep the state of contacts: run without --checkpoint and --restart";
   if (context_.design && context_.checkpoint) return "derivatives and checkpoints do not go together";
+  if (context_.design &&
+      (options_.method == IntegrationMethod::radau || options_.method == IntegrationMethod::rattle)) {
+    return fmt::format(
+        "derivatives of a motion follow explicit steps, which those of method {} are not: leave \"method\" out",
+        to_string(options_.method));
+  }
   if (context_.checkpoint && estimates_) return "an estimate of the error and checkpoints do not go together";
   return {};
 }

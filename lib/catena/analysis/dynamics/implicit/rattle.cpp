@@ -1,0 +1,124 @@
+#include "catena/analysis/dynamics/implicit/rattle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+#include "catena/analysis/run/thresholds.hpp"
+
+namespace catena {
+namespace {
+
+// Of searches for places with the factors of the beginning: each takes a digit or more where a step is of use at all.
+constexpr int most_corrections = 50;
+// Of repetitions for velocities, which gain at least a factor of two each where a step is of use.
+constexpr int most_repetitions = 60;
+// A rest of a step that is longer by this part is rounding of time.
+constexpr double rounding_of_time = 1e-9;
+
+}  // namespace
+
+Rattle::Rattle(Motion motion, double step, double horizon) : motion_(motion), step_(step) {
+  for (std::vector<double>* y : {&y_, &y_before_, &y_new_, &slope_, &slope_before_}) y->assign(motion_.size(), 0.0);
+  half_.assign(motion_.coordinates(), 0.0);
+  scale_.horizon = horizon;
+  scale_.length = motion_.equations().evaluator().length_scale();
+  scale_.set_masses(motion_.equations().masses().mass);
+}
+
+bool Rattle::start(double t, std::span<const double> y) {
+  t_ = t_before_ = from_ = t;
+  steps_ = 0;
+  std::copy(y.begin(), y.end(), y_.begin());
+  if (!motion_.derivative(t_, Side::after, y_, slope_)) return false;
+  curve_places_ = motion_.equations().evaluator().curve_places();
+  observe(0);
+  return true;
+}
+
+void Rattle::observe(double h) {
+  const std::span<const double> y(y_), k(slope_);
+  scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
+                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
+}
+
+bool Rattle::advance(double limit) {
+  Evaluator& evaluator = motion_.equations().evaluator();
+  evaluator.take_turns(motion_.q(std::span(y_)));
+  evaluator.go_to_curve_places(curve_places_);
+  const double next = from_ + static_cast<double>(steps_ + 1) * step_;
+  const bool lands = next >= limit - rounding_of_time * step_;
+  t_new_ = lands ? limit : next;
+  const double h = t_new_ - t_;
+  culprit_ = -1;
+  if (!find_places(h) || !find_velocities(h)) return false;
+  const std::size_t n = motion_.coordinates();
+  for (std::size_t k = 2 * n; k < y_.size(); ++k) y_new_[k] = y_[k] + h / 2 * (slope_before_[k] + slope_[k]);
+  y_before_.swap(y_);
+  y_.swap(y_new_);
+  t_before_ = t_;
+  t_ = t_new_;
+  ++steps_;
+  if (lands) from_ = t_, steps_ = 0;
+  curve_places_ = evaluator.curve_places();
+  ++evaluator.counters.steps;
+  observe(h);
+  return true;
+}
+
+// The first line: with accelerations in place of M^-1 Q, which differ from it along the constraints alone.
+bool Rattle::find_places(double h) {
+  EquationsOfMotion& equations = motion_.equations();
+  const std::size_t n = motion_.coordinates();
+  // Factors of q: the last evaluation may have been at another place, where a row was given.
+  if (!motion_.derivative(t_, t_ == from_ ? Side::after : Side::before, y_, slope_before_)) return false;
+  std::copy(y_.begin(), y_.end(), y_new_.begin());
+  for (std::size_t c = 0; c < n; ++c) y_new_[c] += h * (y_[n + c] + h / 2 * slope_before_[n + c]);
+  equations.evaluator().set_time(t_new_, Side::before);
+  position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), most_corrections);
+  if (!(position_residual_ < RungeKutta::largest_residual)) return false;
+  for (std::size_t c = 0; c < n; ++c) half_[c] = (y_new_[c] - y_[c]) / h;
+  return true;
+}
+
+// The second line: v1 in the forces is repeated until it is the result.
+bool Rattle::find_velocities(double h) {
+  const std::size_t n = motion_.coordinates();
+  const std::span<double> v = motion_.qd(std::span(y_new_));
+  std::copy(half_.begin(), half_.end(), v.begin());
+  for (int k = 0; k < most_repetitions; ++k) {
+    if (!motion_.derivative(t_new_, Side::before, y_new_, slope_)) return false;
+    double change = 0, size = 0;
+    std::vector<double>& last = y_before_;  // is overwritten at the end of the step
+    std::copy(v.begin(), v.end(), last.begin());
+    for (std::size_t c = 0; c < n; ++c) v[c] = half_[c] + h / 2 * slope_[n + c];
+    motion_.equations().project_velocity(v, scale_.rate());
+    for (std::size_t c = 0; c < motion_.moving(); ++c) {
+      const double unit = c % 3 == 2 ? 1 : scale_.length;
+      change = std::max(change, std::abs(v[c] - last[c]) / unit);
+      size = std::max({size, std::abs(v[c]) / unit, h * std::abs(slope_[n + c]) / unit});
+    }
+    if (!std::isfinite(change)) return false;
+    // Accelerations are those of the velocities before this repetition: of the result to rounding.
+    if (change <= thresholds::carried_rounding * size) return true;
+  }
+  return false;
+}
+
+void Rattle::interpolate(double t, std::span<double> y) {
+  const std::size_t n = motion_.coordinates();
+  const double h = t_ - t_before_, s = (t - t_before_) / h;
+  const double end = s * s * (3 - 2 * s), slope0 = h * s * (1 - s) * (1 - s), slope1 = -h * s * s * (1 - s);
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    const double k0 = k < n ? y_before_[n + k] : slope_before_[k], k1 = k < n ? y_[n + k] : slope_[k];
+    y[k] = (1 - end) * y_before_[k] + end * y_[k] + slope0 * k0 + slope1 * k1;
+  }
+}
+
+IntegratorMemory Rattle::memory() const {
+  IntegratorMemory memory = scale_.memory();
+  memory.step = step_;
+  return memory;
+}
+
+}  // namespace catena
