@@ -116,6 +116,60 @@ TEST(Radau, StiffChainsMoveAsTheirMatrixExponentialSays) {
   }
 }
 
+TEST(Auto, GoesOverToImplicitStepsWhereStiffnessAsksForThem) {
+  int implicit = 0;
+  for (unsigned seed = 1; seed <= size_of_test(24u, 6u); ++seed) {
+    SCOPED_TRACE(seed);
+    SpringChain chain(seed);
+    chain.end = 3;
+    const TextRun run =
+        run_text(chain.scene(R"({"type": "dynamics", "digits": false, "until": 3, "every": 0.5, "tolerance": 1e-7})"));
+    ASSERT_TRUE(run.analysis().report.ok()) << run.outcome.error_text << run.analysis().report.message;
+    const std::vector<double> t = run.column("t");
+    for (std::size_t row = 0; row < t.size(); ++row) {
+      const Eigen::Vector3d exact = chain.exact(t[row]);
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(run.column("m" + std::to_string(k) + ".x")[row], k + 1 + exact[k], 1e-6);
+    }
+    // Explicit steps are bound by some five times the shortest time constant.
+    const double fastest = chain.damping[1] * (1 / chain.mass[0] + 1 / chain.mass[1]);
+    const bool turned = field<std::string>(run, "method") == "rk8, radau";
+    EXPECT_TRUE(turned || fastest < 2e5) << fastest;
+    EXPECT_FALSE(turned && fastest < 1e3) << fastest;
+    EXPECT_LE(run.analysis().report.counters.steps, 8000);
+    implicit += turned;
+  }
+  EXPECT_GE(implicit, size_of_test(5, 1));
+}
+
+// A stiff hold that lets go within 1 ms: afterwards explicit steps are the longer ones. Beside the implicit midpoint
+// rule while it lets go, and a cosine afterwards.
+TEST(Auto, GoesBackToExplicitSteps) {
+  double x0 = 0.3 * 1e9 / (1e9 + 9), v0 = 0;
+  constexpr int parts = 400'000;
+  constexpr double h = 0.001 / parts;
+  for (int k = 0; k < parts; ++k) {
+    const double holds = 1 - (k + 0.5) / parts, stiffness = 9 + 1e9 * holds;
+    const double v =
+        (2 * v0 + h * (1e9 * holds * 0.3 - stiffness * x0)) / (2 + h * h * stiffness / 2 + h * 6e4 * holds);
+    x0 += h * v;
+    v0 = 2 * v - v0;
+  }
+  const auto steps = [&](const std::string& method) {
+    const TextRun run = run_text(
+        R"json({"catena": 1, "bodies": {"m": {"mass": 1, "particle": true, "position": [0.3, 0]}},
+        "constraints": [{"type": "absolute_y", "i": "m", "value": 0}],
+        "forces": [{"type": "point_force", "i": "m", "force": ["=-9*m.x - max(0, min(1, (2.001 - t)*1000))*(1e9*(m.x - 0.3) + 6e4*m.vx)", 0]}],
+        "outputs": ["m.x"], "analyses": [{"type": "dynamics", "digits": false, "until": 200, "every": 20,
+          "tolerance": 1e-10)json" +
+        method + "}]}");
+    EXPECT_TRUE(run.analysis().report.ok()) << run.outcome.error_text << run.analysis().report.message;
+    const double turned = 3 * (run.last("t") - 2.001);
+    EXPECT_NEAR(run.last("m.x"), x0 * std::cos(turned) + v0 / 3 * std::sin(turned), 1e-9);
+    return run.analysis().report.counters.steps;
+  };
+  EXPECT_LT(2 * steps(""), steps(R"(, "method": "radau")"));
+}
+
 std::string double_pendulum(const std::string& analyses, double turn = 0, double damping = 0) {
   return R"({"catena": 1, "gravity": [0, -9.81], "bodies": {
     "one": {"rod": {"from": [0, 0], "to": [0.5, 0]}, "mass": 1, "angular_velocity": )" +

@@ -38,6 +38,8 @@ class Dynamics {
   const Plan& plan() const { return *plan_; }
   /// The method in use: the requested one, or the one chosen automatically.
   IntegrationMethod method() const { return method_; }
+  /// All that were in use, in the order of their first steps.
+  const std::vector<IntegrationMethod>& methods() const { return methods_; }
   Evaluator& evaluator() { return evaluator_; }
 
   /// Starts from a state of an earlier analysis instead of the given configuration at t = 0.
@@ -146,6 +148,9 @@ class Dynamics {
   Report stuck();
   static Report cancelled(double t);
   Report check_pace(double last);
+  void begin_looking_for_stiffness();
+  bool look_for_stiffness(double limit);
+  double try_method(IntegrationMethod method, int steps, double limit);
   double next_breakpoint(double t) const;
   void look_ahead_at_laws();
   Snapshot snapshot(double t, std::span<const double> y, const Needs& needs) const;
@@ -175,6 +180,14 @@ class Dynamics {
   std::unique_ptr<Integrator> integrator_;
   std::shared_ptr<const LawStretches> law_stretches_;  // none where no law reads t, or steps are fixed
   StepPace pace_;
+  /// The search for stiffness: steps and time at the last look, and when the next one is.
+  struct {
+    bool wanted = false, may_change = false;
+    std::int64_t step = 0, next = 0, wait = 0;
+    double t = 0;
+    IntegrationMethod explicit_method = IntegrationMethod::rk8;
+  } stiffness_;
+  std::vector<IntegrationMethod> methods_;
   MotionWork work_;
   PresentRow row_;
   SingularRows singular_;

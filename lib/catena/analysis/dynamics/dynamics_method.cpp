@@ -92,11 +92,17 @@ Report Dynamics::check_freedoms() const {
 // positions, and at tolerances near rounding, Runge-Kutta is the safer choice.
 void Dynamics::choose_method(bool stages_are_watched) {
   method_ = options_.method;
-  if (method_ != IntegrationMethod::automatic) return;
-  // Derivatives that are carried along the stages of order 8 cost no evaluations; beside steps of Adams all are theirs.
-  const bool multistep = !stages_are_watched && options_.step == 0 && options_.tolerance >= least_multistep_tolerance &&
-                         plan_->moving >= least_multistep_bodies && !has_closed_loops(*plan_);
-  method_ = multistep ? IntegrationMethod::adams : IntegrationMethod::rk8;
+  stiffness_.wanted = method_ == IntegrationMethod::automatic && options_.may_turn_implicit && options_.step == 0 &&
+                      !stages_are_watched;
+  if (method_ == IntegrationMethod::automatic) {
+    // Derivatives that are carried along the stages of order 8 cost no evaluations; beside steps of Adams all are
+    // theirs.
+    const bool multistep = !stages_are_watched && options_.step == 0 &&
+                           options_.tolerance >= least_multistep_tolerance && plan_->moving >= least_multistep_bodies &&
+                           !has_closed_loops(*plan_);
+    method_ = multistep ? IntegrationMethod::adams : IntegrationMethod::rk8;
+  }
+  methods_ = {method_};
 }
 
 std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, double horizon) const {

@@ -274,7 +274,10 @@ SystemState DynamicsOfIslands::state() const { return state_of(evaluator_, t_, q
 
 std::vector<IntegrationMethod> DynamicsOfIslands::methods() const {
   std::vector<IntegrationMethod> methods;
-  for (const auto& part : parts_) methods.push_back(part->dynamics().method());
+  for (const auto& part : parts_) {
+    const auto& used = part->dynamics().methods();
+    methods.insert(methods.end(), used.begin(), used.end());
+  }
   return methods;
 }
 

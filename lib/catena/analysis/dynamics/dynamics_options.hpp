@@ -34,6 +34,9 @@ struct DynamicsOptions {
   double tolerance = 1e-8;
   /// Fixed step, s; 0: chosen by the integrator.
   double step = 0;
+  /// Whether `automatic` may go over to implicit steps where stiffness asks for them, and back; not where derivatives
+  /// follow the steps.
+  bool may_turn_implicit = true;
   /// Largest number of steps of a run, rejected ones included; the run ends when they are used up, or as soon as ten
   /// times as many would be needed at its present pace. Ignored for a fixed step.
   std::int64_t max_steps = 10'000'000;

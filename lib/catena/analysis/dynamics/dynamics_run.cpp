@@ -39,6 +39,7 @@ void Dynamics::begin(const TimeGrid& grid, const Needs& needs) {
   run_.report.rows = plan_->rows;
   run_.report.islands = plan_->islands;
   integrator_.reset();
+  begin_looking_for_stiffness();
   run_.outcome = run_.grid.size() > 0 ? start() : Report{};
 }
 
@@ -205,7 +206,7 @@ Report Dynamics::step(RowObserver& observer) {
     return shown;
   }
   run_.at_jump = t_ == limit && limit < run_.grid.last();
-  return {};
+  return look_for_stiffness(limit) ? Report{} : stuck();
 }
 
 // A function of time jumps here: the next step starts with what holds afterwards.

@@ -47,6 +47,7 @@ class DynamicsWithEvents {
 
   const Plan& plan() const { return dynamics_->plan(); }
   IntegrationMethod method() const { return dynamics_->method(); }
+  const std::vector<IntegrationMethod>& methods() const { return dynamics_->methods(); }
   Evaluator& evaluator() { return dynamics_->evaluator(); }
   /// Told of every phase of the motion; nullptr: none.
   void witness(PhaseWitness* witness) { witness_ = witness; }

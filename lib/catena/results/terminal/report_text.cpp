@@ -113,7 +113,8 @@ std::string extremes_text(const AnalysisResult& result) {
   return text.empty() ? text : "  least and largest:\n" + text;
 }
 
-/// How many digits are right, from the worst column to the best; columns that are zero but for rounding apart.
+/// How many digits are right, from the worst column to the best; columns of which none is known apart: most are
+/// zero but for rounding.
 std::string digits_text(const AnalysisResult& result) {
   std::size_t least = result.digits.size();
   double most = 0;
@@ -125,7 +126,8 @@ std::string digits_text(const AnalysisResult& result) {
     if (least == result.digits.size() || digits < result.digits[least]) least = k;
     most = std::max(most, digits);
   }
-  const std::string of_zeros = zeros == 0 ? "" : count(zeros, "column is", "columns are") + " zero to rounding\n";
+  const std::string of_zeros =
+      zeros == 0 ? "" : count(zeros, "column has", "columns have") + " no digit that is known, and is shown as 0\n";
   if (least == result.digits.size()) return of_zeros.empty() ? of_zeros : "  " + of_zeros;
   const auto whole = [](double digits) { return std::to_string(static_cast<int>(digits)); };
   std::string text = "  digits right: " + whole(result.digits[least]);

@@ -38,6 +38,16 @@ DynamicsOptions options_of(const AnalysisTask& task) {
   return options;
 }
 
+/// All methods in use, each once.
+std::string named(const std::vector<IntegrationMethod>& used) {
+  std::string methods;
+  for (const IntegrationMethod method : used) {
+    const std::string_view name = to_string(method);
+    if (methods.find(name) == std::string::npos) methods += (methods.empty() ? "" : ", ") + std::string(name);
+  }
+  return methods;
+}
+
 /// One object a kind of coordinate.
 std::vector<FieldRecord> records_of(const EstimatedError& error, const Model& model) {
   struct Kind {
@@ -291,7 +301,7 @@ void DynamicsTask::run_with_events_or_pauses() {
   std::vector<std::string>& warnings = result_.report.warnings;
   if (!failure.empty()) warnings.push_back("a checkpoint was not saved: " + failure);
   if (!taken_up.empty()) warnings.push_back(taken_up);
-  result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
+  result_.fields.push_back({"method", named(analysis.methods())});
   EventEntries entries(*model_);
   entries.add(context_.task, analysis.records());
   entries.add(analysis.contact_events());
@@ -309,12 +319,7 @@ void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
     });
   });
   add_singular_points(result_, analysis.singular_points(), *model_);
-  std::string methods;
-  for (const IntegrationMethod method : analysis.methods()) {
-    const std::string_view name = to_string(method);
-    if (methods.find(name) == std::string::npos) methods += (methods.empty() ? "" : ", ") + std::string(name);
-  }
-  result_.fields.push_back({"method", methods});
+  result_.fields.push_back({"method", named(analysis.methods())});
   result_.fields.push_back({"integrated_apart", static_cast<std::int64_t>(analysis.classes())});
   EventEntries entries(*model_);
   entries.add(analysis.contact_events());
@@ -346,6 +351,7 @@ void DynamicsTask::run() {
 
 void DynamicsTask::run_on() {
   if (estimates_) used_options_ = finer_options(options_);
+  if (context_.design) used_options_.may_turn_implicit = false;
   const bool in_common = !context_.task.events.empty() || context_.checkpoint || follows_ropes();
   // A fixed step is the same for all; two runs that are compared must be divided alike.
   const bool looked_at = context_.design || !context_.task.measures.empty();
@@ -359,7 +365,7 @@ void DynamicsTask::run_on() {
     return std::make_unique<Dynamics>(model, plan, options);
   });
   add_singular_points(result_, analysis.singular_points(), *model_);
-  result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
+  result_.fields.push_back({"method", named(analysis.methods())});
   add_jolts(analysis.jolts());
 }
 
