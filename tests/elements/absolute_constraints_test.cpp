@@ -45,20 +45,21 @@ Found evaluate(const E& element, const Given& g) {
   ConstraintData<E> data;
   data.element = {element};
   data.shift.resize(1);
-  data.value = {g.c};
   data.scale = {1};
   data.timed = {{0, 0}};
-  const Frame<double> frame = make_frame(g.x, g.y, g.phi);
+  Pose pose;
+  pose.values = {g.c};
+  pose.frames = {make_frame(g.x, g.y, g.phi)};
   const double qd[3] = {g.vx, g.vy, g.omega};
   Found found{};
-  ConstraintOperations<E>::phi(block, data, {&frame}, &found.phi);
+  ConstraintOperations<E>::phi(block, data, pose, &found.phi);
   double varying[3];
-  ConstraintOperations<E>::jacobian(block, data, {&frame}, varying);
+  ConstraintOperations<E>::jacobian(block, data, pose, varying);
   constexpr auto pattern = jacobian_pattern<E>();
   for (std::size_t k = 0, next = 0; k < 3; ++k)
     found.phi_q[k] = pattern[k] == Entry::varying ? varying[next++] : pattern[k] == Entry::plus_one ? 1 : 0;
-  ConstraintOperations<E>::nu(block, data, {&frame}, &found.nu);
-  ConstraintOperations<E>::gamma(block, data, {&frame}, qd, &found.gamma);
+  ConstraintOperations<E>::nu(block, data, pose, &found.nu);
+  ConstraintOperations<E>::gamma(block, data, pose, qd, &found.gamma);
   return found;
 }
 

@@ -85,8 +85,7 @@ template <class E>
 struct Stored {
   ConstraintBlock<E> block;
   ConstraintData<E> data;
-  std::array<Frame<double>, 2> frames;
-  CurvePlace contact;
+  Pose pose;
 
   explicit Stored(const ConstraintCase<E>& x) {
     block.entry = {0};
@@ -96,13 +95,12 @@ struct Stored {
     data.element = {x.element};
     data.shift.resize(1);
     data.shift[0].i = x.ground;
-    data.value = {x.c};
+    if (E::functions == 1) pose.values = {x.c};
     data.scale = {1};
     if (E::functions == 1) data.timed = {{0, 0}};
-    frames = {make_frame(x.q[0], x.q[1], x.q[2]), make_frame(x.q[3], x.q[4], x.q[5])};
-    contact = found_contact(x.element, frames[0], frames[1]);
+    pose.frames = {make_frame(x.q[0], x.q[1], x.q[2]), make_frame(x.q[3], x.q[4], x.q[5])};
+    pose.contacts = {found_contact(x.element, pose.frames[0], pose.frames[1])};
   }
-  Pose pose() const { return {frames.data(), &contact}; }
 };
 
 /// What rounding in a row may be compared with: the change of the row when the bodies move by their own size.
@@ -154,12 +152,12 @@ TYPED_TEST(ConstraintContract, RowsAndJacobian) {
   this->for_random_cases([&](const ConstraintCase<E>& x, const auto& exact, const auto& row_size, double size) {
     const Stored<E> stored(x);
     typename TestFixture::Rows rows;
-    ConstraintOperations<E>::phi(stored.block, stored.data, stored.pose(), rows.data());
+    ConstraintOperations<E>::phi(stored.block, stored.data, stored.pose, rows.data());
     const auto exact_phi = exact_rows(x);
 
-    const auto derived = ConstraintOperations<E>::local_jacobian(stored.block, stored.data, stored.pose(), 0);
+    const auto derived = ConstraintOperations<E>::local_jacobian(stored.block, stored.data, stored.pose, 0);
     std::vector<double> closed(static_cast<std::size_t>(varying_entries<E>()));
-    ConstraintOperations<E>::jacobian(stored.block, stored.data, stored.pose(), closed.data());
+    ConstraintOperations<E>::jacobian(stored.block, stored.data, stored.pose, closed.data());
 
     constexpr auto pattern = jacobian_pattern<E>();
     std::size_t varying = 0;
@@ -193,12 +191,12 @@ TYPED_TEST(ConstraintContract, VelocityAndAccelerationRightHandSides) {
   this->for_random_cases([&](const ConstraintCase<E>& x, const auto&, const auto& row_size, double) {
     const Stored<E> stored(x);
     typename TestFixture::Rows nu{}, gamma{};
-    ConstraintOperations<E>::nu(stored.block, stored.data, stored.pose(), nu.data());
-    ConstraintOperations<E>::gamma(stored.block, stored.data, stored.pose(), x.qd.data(), gamma.data());
+    ConstraintOperations<E>::nu(stored.block, stored.data, stored.pose, nu.data());
+    ConstraintOperations<E>::gamma(stored.block, stored.data, stored.pose, x.qd.data(), gamma.data());
     Taylor<double> derived[E::rows];
-    const auto i = moving(stored.frames[0], x.qd[0], x.qd[1], x.qd[2]);
-    const auto j = moving(stored.frames[1], x.qd[3], x.qd[4], x.qd[5]);
-    x.element.phi(Arguments<Taylor<double>>{i, j, x.c, x.ground, &stored.contact}, derived);
+    const auto i = moving(stored.pose.frames[0], x.qd[0], x.qd[1], x.qd[2]);
+    const auto j = moving(stored.pose.frames[1], x.qd[3], x.qd[4], x.qd[5]);
+    x.element.phi(Arguments<Taylor<double>>{i, j, x.c, x.ground, &stored.pose.contacts[0]}, derived);
     const auto expected_nu = exact_nu(x), expected_gamma = exact_gamma(x);
     for (std::size_t r = 0; r < nu.size(); ++r) {
       // Rates are up to 2 a second, so gamma is up to 16 times what changes of the row by 1 are.
@@ -215,7 +213,7 @@ TYPED_TEST(ConstraintContract, SecondDerivatives) {
     const Stored<E> stored(x);
     double lambda[E::rows];
     for (std::size_t r = 0; r < row_size.size(); ++r) lambda[r] = (r % 2 ? -0.7 : 1.3) / row_size[r];
-    const ElementMatrix found = ConstraintOperations<E>::hessian(stored.block, stored.data, stored.pose(), lambda, 0);
+    const ElementMatrix found = ConstraintOperations<E>::hessian(stored.block, stored.data, stored.pose, lambda, 0);
     for (std::size_t a = 0; a < 3 * E::bodies; ++a) {
       for (std::size_t b = 0; b < 3 * E::bodies; ++b) {
         SCOPED_TRACE(::testing::Message() << "entry " << a << ", " << b);
@@ -226,7 +224,8 @@ TYPED_TEST(ConstraintContract, SecondDerivatives) {
     constexpr auto pattern = hessian_pattern<E>();
     double closed[pattern.size() + 1];
     if constexpr (HasClosedHessian<E>)
-      x.element.hessian(Arguments<double>{stored.frames[0], stored.frames[1], x.c.f, x.ground}, lambda, closed);
+      x.element.hessian(Arguments<double>{stored.pose.frames[0], stored.pose.frames[1], x.c.f, x.ground}, lambda,
+                        closed);
     for (std::size_t a = 0, next = 0; a < 3 * E::bodies; ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
         SCOPED_TRACE(::testing::Message() << "entry " << a << ", " << b);
@@ -253,7 +252,7 @@ TYPED_TEST(ConstraintContract, MeasuredQuantity) {
     this->for_random_cases([&](const ConstraintCase<E>& x, const auto&, const auto& row_size, double) {
       Stored<E> stored(x);
       const Measured found =
-          ConstraintOperations<E>::measure(stored.block, stored.data, stored.pose(), x.qd.data(), x.qdd.data(), 0);
+          ConstraintOperations<E>::measure(stored.block, stored.data, stored.pose, x.qd.data(), x.qdd.data(), 0);
       ConstraintCase<E> met = x;
       met.c = {found.value, 0, 0};
       this->expect_exact(0, exact_rows(met)[0], row_size[0], 64, "row at the measured value");
@@ -284,17 +283,17 @@ TYPED_TEST(ConstraintContract, ScaleMultipliesEverything) {
     constexpr int entries = varying_entries<E>();
     const auto evaluate = [&](const Stored<E>& s) {
       std::vector<double> values(static_cast<std::size_t>(entries + 3));
-      ConstraintOperations<E>::jacobian(s.block, s.data, s.pose(), values.data());
-      ConstraintOperations<E>::phi(s.block, s.data, s.pose(), values.data() + entries);
-      ConstraintOperations<E>::nu(s.block, s.data, s.pose(), values.data() + entries + 1);
-      ConstraintOperations<E>::gamma(s.block, s.data, s.pose(), x.qd.data(), values.data() + entries + 2);
+      ConstraintOperations<E>::jacobian(s.block, s.data, s.pose, values.data());
+      ConstraintOperations<E>::phi(s.block, s.data, s.pose, values.data() + entries);
+      ConstraintOperations<E>::nu(s.block, s.data, s.pose, values.data() + entries + 1);
+      ConstraintOperations<E>::gamma(s.block, s.data, s.pose, x.qd.data(), values.data() + entries + 2);
       return values;
     };
     const std::vector<double> a = evaluate(plain), b = evaluate(scaled);
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_DOUBLE_EQ(b[k], 0.25 * a[k]) << k;
-    const auto local = ConstraintOperations<E>::local_jacobian(scaled.block, scaled.data, scaled.pose(), 0);
+    const auto local = ConstraintOperations<E>::local_jacobian(scaled.block, scaled.data, scaled.pose, 0);
     EXPECT_EQ(local.scale, 0.25);
-    EXPECT_EQ(local.entries, ConstraintOperations<E>::local_jacobian(plain.block, plain.data, plain.pose(), 0).entries);
+    EXPECT_EQ(local.entries, ConstraintOperations<E>::local_jacobian(plain.block, plain.data, plain.pose, 0).entries);
   }
 }
 
@@ -314,7 +313,7 @@ TYPED_TEST(ConstraintContract, FarFromTheOrigin) {
       }
       const Stored<E> stored(far);
       typename TestFixture::Rows rows;
-      ConstraintOperations<E>::phi(stored.block, stored.data, stored.pose(), rows.data());
+      ConstraintOperations<E>::phi(stored.block, stored.data, stored.pose, rows.data());
       const auto expected = exact_rows(far);
       for (std::size_t r = 0; r < rows.size(); ++r) this->expect_exact(rows[r], expected[r], row_size[r], 16, "phi");
     } else {
@@ -323,8 +322,8 @@ TYPED_TEST(ConstraintContract, FarFromTheOrigin) {
       for (std::size_t k : {0u, 3u}) moved.q[k] += 4 * size, moved.q[k + 1] -= 2 * size;
       const Stored<E> a(x), b(moved);
       typename TestFixture::Rows rows_a, rows_b;
-      ConstraintOperations<E>::phi(a.block, a.data, a.pose(), rows_a.data());
-      ConstraintOperations<E>::phi(b.block, b.data, b.pose(), rows_b.data());
+      ConstraintOperations<E>::phi(a.block, a.data, a.pose, rows_a.data());
+      ConstraintOperations<E>::phi(b.block, b.data, b.pose, rows_b.data());
       for (std::size_t r = 0; r < rows_a.size(); ++r)
         EXPECT_NEAR(rows_a[r], rows_b[r], 64 * eps * row_size[r]) << "row " << r;
     }

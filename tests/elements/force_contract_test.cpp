@@ -44,7 +44,7 @@ struct Case {
   Coordinates q{}, qd{};
   ForceBlock<E> block;
   ForceData<E> data;
-  std::array<Frame<double>, 2> frames;
+  Pose pose;
 
   explicit Case(unsigned seed) {
     Random random(seed);
@@ -52,19 +52,21 @@ struct Case {
       q[k] = random.between(-2, 2);
       qd[k] = random.between(-2, 2);
     }
-    frames = {make_frame(q[0], q[1], q[2]), make_frame(q[3], q[4], q[5])};
+    pose.frames = {make_frame(q[0], q[1], q[2]), make_frame(q[3], q[4], q[5])};
     ParameterSource<double> source(seed + 1000);
-    data.element = {random_element<E>(source, frames[0], frames[1])};
+    data.element = {random_element<E>(source, pose.frames[0], pose.frames[1])};
     data.shift.resize(1);
     if (E::bodies == 1) data.shift[0].i = random.place(2);
-    for (int k = 0; k < E::functions; ++k) data.value.push_back(random.between(-3, 3));
-    data.rate.assign(data.value.size(), 0.0);
+    for (int k = 0; k < E::functions; ++k) pose.loads.push_back(random.between(-3, 3));
+    pose.load_rates.assign(pose.loads.size(), 0.0);
     block.entry = {0};
     block.body_i = {0};
     block.body_j = {1};
   }
 
   const E& element() const { return data.element[0]; }
+  MovingPose moving() const { return {pose, qd.data()}; }
+  MovingPose resting() const { return {pose}; }
   bool conservative() const { return is_conservative(element()); }
 
   /// Calls f(arguments) in 50 digits, coordinates and velocities moved by the offsets.
@@ -74,7 +76,7 @@ struct Case {
     const auto rate = [&](std::size_t k) { return Exact(at_rest ? 0 : qd[k]) + dqd[k]; };
     const Frame<Exact> i = make_frame<Exact>(at(0), at(1), at(2)), j = make_frame<Exact>(at(3), at(4), at(5));
     const Twist<Exact> u{rate(0), rate(1), rate(2)}, v{rate(3), rate(4), rate(5)};
-    const std::vector<Exact> values(data.value.begin(), data.value.end());
+    const std::vector<Exact> values(pose.loads.begin(), pose.loads.end());
     return f(ForceArguments<Exact>{i, j, u, v, values.data(), data.shift[0].i});
   }
   Offsets exact_force(const Offsets& dq, const Offsets& dqd, bool at_rest) const {
@@ -125,12 +127,12 @@ TYPED_TEST(ForceContract, ForceIsMinusTheGradientOfThePotential) {
     if (!x.conservative()) return;
     ++conservative;
     const Exact h = difference_step();
-    const auto force = TestFixture::Operations::force(x.block, x.data, x.frames.data(), nullptr, 0);
+    const auto force = TestFixture::Operations::force(x.block, x.data, x.resting(), 0);
     for (std::size_t k = 0; k < 3 * TypeParam::bodies; ++k) {
       const Exact slope = (x.exact_potential(along(k, h)) - x.exact_potential(along(k, -h))) / (2 * h);
       this->expect_near(force[k], -slope, "force");
     }
-    this->expect_near(TestFixture::Operations::potential(x.block, x.data, x.frames.data()), x.exact_potential({}), "V");
+    this->expect_near(TestFixture::Operations::potential(x.block, x.data, x.pose), x.exact_potential({}), "V");
   });
   EXPECT_GT(conservative, 0);
 }
@@ -138,9 +140,9 @@ TYPED_TEST(ForceContract, ForceIsMinusTheGradientOfThePotential) {
 TYPED_TEST(ForceContract, ForceStiffnessAndDampingAreExact) {
   this->for_random_cases([&](const Case<TypeParam>& x) {
     const Exact h = difference_step();
-    const auto force = TestFixture::Operations::force(x.block, x.data, x.frames.data(), x.qd.data(), 0);
-    const auto stiffness = TestFixture::Operations::stiffness(x.block, x.data, x.frames.data(), x.qd.data(), 0);
-    const auto damping = TestFixture::Operations::damping(x.block, x.data, x.frames.data(), x.qd.data(), 0);
+    const auto force = TestFixture::Operations::force(x.block, x.data, x.moving(), 0);
+    const auto stiffness = TestFixture::Operations::stiffness(x.block, x.data, x.moving(), 0);
+    const auto damping = TestFixture::Operations::damping(x.block, x.data, x.moving(), 0);
     const Offsets exact = x.exact_force({}, {}, false);
     for (std::size_t k = 0; k < 3 * TypeParam::bodies; ++k) {
       const Offsets after = x.exact_force(along(k, h), {}, false), before = x.exact_force(along(k, -h), {}, false);
@@ -162,7 +164,7 @@ TYPED_TEST(ForceContract, SecondDerivativesOfThePotentialAreExact) {
   this->for_random_cases([&](const Case<TypeParam>& x) {
     if (!x.conservative()) return;
     std::vector<double> values(written.size() + 1, 0.0);
-    TestFixture::Operations::add_stiffness(x.block, x.data, x.frames.data(), false, slots.data(), values.data());
+    TestFixture::Operations::add_stiffness(x.block, x.data, x.resting(), false, slots.data(), values.data());
     const Exact h = difference_step();
     for (std::size_t r = 0; r < 3 * TypeParam::bodies; ++r) {
       for (std::size_t c = 0; c <= r; ++c) {
@@ -185,8 +187,7 @@ TYPED_TEST(ForceContract, DissipationIsThePowerThatDampingTakes) {
     const Offsets moving = x.exact_force({}, {}, false), resting = x.exact_force({}, {}, true);
     Exact power = 0;
     for (std::size_t k = 0; k < 6; ++k) power += (resting[k] - moving[k]) * Exact(x.qd[k]);
-    this->expect_near(TestFixture::Operations::dissipation(x.block, x.data, x.frames.data(), x.qd.data()), power,
-                      "dissipation");
+    this->expect_near(TestFixture::Operations::dissipation(x.block, x.data, x.moving()), power, "dissipation");
   });
 }
 
@@ -195,7 +196,7 @@ TYPED_TEST(ForceContract, DissipationIsThePowerThatDampingTakes) {
 TYPED_TEST(ForceContract, BodiesExertOppositeForces) {
   if (TypeParam::bodies == 1) GTEST_SKIP() << "acts from outside";
   this->for_random_cases([&](const Case<TypeParam>& x) {
-    const auto Q = TestFixture::Operations::force(x.block, x.data, x.frames.data(), x.qd.data(), 0);
+    const auto Q = TestFixture::Operations::force(x.block, x.data, x.moving(), 0);
     this->expect_near(Q[0] + Q[3], 0, "sum of x");
     this->expect_near(Q[1] + Q[4], 0, "sum of y");
     const double about_origin = Q[2] + Q[5] + x.q[0] * Q[1] - x.q[1] * Q[0] + x.q[3] * Q[4] - x.q[4] * Q[3];

@@ -13,6 +13,7 @@
 #             run, pose <- kinematics/course <- kinematics;  run <- contact/problem <- contact
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
 #             <- explaining
+#   assembly  structure <- . <- {systems, design}
 #   drawing   shapes <- figures
 #   results   . <- terminal
 
@@ -62,6 +63,8 @@ BEGIN {
   after("linalg", "rank", "patterns kernels factorization")
   after("linalg", "pivoting", "rank")
   after("results", "terminal", ".")
+  after("assembly", "structure", "")
+  part["assembly/."] = " . structure "
   after("assembly", "systems", ".")
   after("assembly", "design", ".")
   after("elements", "constraints", ".")

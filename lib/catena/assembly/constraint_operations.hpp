@@ -27,25 +27,26 @@ struct ElementFrames {
   Vec2<double> ground{};
   const CurvePlace* contact = &no_contact;
 
-  ElementFrames(const ConstraintBlock<E>& block, const ConstraintData<E>& data, Pose pose, int e) {
+  ElementFrames(const ConstraintBlock<E>& block, const ConstraintData<E>& data, const Pose& pose, int e) {
     const auto k = static_cast<std::size_t>(e);
     if constexpr (E::bodies == 1) {
-      i = pose.frames[block.body_i[k]];
+      i = pose.frames[static_cast<std::size_t>(block.body_i[k])];
       ground = data.shift[k].i;
     } else {
-      i = shifted(pose.frames[block.body_i[k]], data.shift[k].i);
-      j = shifted(pose.frames[block.body_j[k]], data.shift[k].j);
+      i = shifted(pose.frames[static_cast<std::size_t>(block.body_i[k])], data.shift[k].i);
+      j = shifted(pose.frames[static_cast<std::size_t>(block.body_j[k])], data.shift[k].j);
     }
-    if constexpr (SearchesCurve<E>) contact = pose.contacts + block.first_contact + block.entry[k];
+    if constexpr (SearchesCurve<E>) contact = pose.contacts.data() + block.first_contact + block.entry[k];
   }
   /// They refer to this object.
   Arguments<double> arguments(double c) const { return {i, j, c, ground, contact}; }
 };
 
 template <class E>
-const Taylor<double> value_at([[maybe_unused]] const ConstraintData<E>& data, [[maybe_unused]] int e) {
+Taylor<double> value_at([[maybe_unused]] const ConstraintBlock<E>& block, [[maybe_unused]] const Pose& pose,
+                        [[maybe_unused]] int e) {
   if constexpr (E::functions > 0) {
-    return data.value[static_cast<std::size_t>(e)];
+    return pose.values[static_cast<std::size_t>(block.first_value + e)];
   } else {
     return {};
   }
@@ -98,7 +99,7 @@ Rates rates_of(const std::vector<int>& body, const double* qd, int e) {
 }  // namespace detail
 
 template <class E>
-void ConstraintOperations<E>::phi(const Block& block, const Data& data, Pose pose, double* out) {
+void ConstraintOperations<E>::phi(const Block& block, const Data& data, const Pose& pose, double* out) {
   double* row = out + block.first_row;
   for (int e = 0; e < block.size(); ++e, row += E::rows) {
     const detail::ElementFrames<E> f(block, data, pose, e);
@@ -108,19 +109,19 @@ void ConstraintOperations<E>::phi(const Block& block, const Data& data, Pose pos
       out[block.row(e)] += part;
       continue;
     }
-    data.element[static_cast<std::size_t>(e)].phi(f.arguments(detail::value_at(data, e).f), row);
+    data.element[static_cast<std::size_t>(e)].phi(f.arguments(detail::value_at(block, pose, e).f), row);
     if constexpr (HasSquaredValue<E>) row[0] *= detail::scale_at(data, e);
   }
 }
 
 template <class E>
-void ConstraintOperations<E>::jacobian(const Block& block, const Data& data, Pose pose, double* values) {
+void ConstraintOperations<E>::jacobian(const Block& block, const Data& data, const Pose& pose, double* values) {
   constexpr int varying = varying_entries<E>();
   if constexpr (varying > 0) {
     const int* slot = block.slot.data();
     for (int e = 0; e < block.size(); ++e, slot += varying) {
       const detail::ElementFrames<E> f(block, data, pose, e);
-      const double c = detail::value_at(data, e).f, scale = detail::scale_at(data, e);
+      const double c = detail::value_at(block, pose, e).f, scale = detail::scale_at(data, e);
       const E& element = data.element[static_cast<std::size_t>(e)];
       double entries[jacobian_size<E>];
       if constexpr (HasClosedJacobian<E>) {
@@ -145,20 +146,21 @@ void ConstraintOperations<E>::jacobian(const Block& block, const Data& data, Pos
 }
 
 template <class E>
-void ConstraintOperations<E>::nu(const Block& block, const Data& data, Pose pose, double* out) {
+void ConstraintOperations<E>::nu(const Block& block, const Data& data, const Pose& pose, double* out) {
   if constexpr (E::functions > 0) {
     for (const auto& timed : data.timed) {
       const int e = timed.element;
       const detail::ElementFrames<E> f(block, data, pose, e);
       Taylor<double> rows[E::rows];
-      detail::taylor_rows(data.element[static_cast<std::size_t>(e)], f, {}, {}, detail::value_at(data, e), rows);
+      detail::taylor_rows(data.element[static_cast<std::size_t>(e)], f, {}, {}, detail::value_at(block, pose, e), rows);
       for (int r = 0; r < E::rows; ++r) out[block.row(e) + r] = -detail::scale_at(data, e) * rows[r].d;
     }
   }
 }
 
 template <class E>
-void ConstraintOperations<E>::gamma(const Block& block, const Data& data, Pose pose, const double* qd, double* out) {
+void ConstraintOperations<E>::gamma(const Block& block, const Data& data, const Pose& pose, const double* qd,
+                                    double* out) {
   double* row = out + block.first_row;
   for (int e = 0; e < block.size(); ++e, row += E::rows) {
     const detail::ElementFrames<E> f(block, data, pose, e);
@@ -170,10 +172,10 @@ void ConstraintOperations<E>::gamma(const Block& block, const Data& data, Pose p
       element.gamma(f.arguments(0), u, v, &part);
       out[block.row(e)] += part;
     } else if constexpr (HasClosedGamma<E>) {
-      element.gamma(f.arguments(detail::value_at(data, e).f), u, v, row);
+      element.gamma(f.arguments(detail::value_at(block, pose, e).f), u, v, row);
     } else {
       Taylor<double> rows[E::rows];
-      detail::taylor_rows(element, f, u, v, detail::value_at(data, e), rows);
+      detail::taylor_rows(element, f, u, v, detail::value_at(block, pose, e), rows);
       for (int r = 0; r < E::rows; ++r) row[r] = -rows[r].dd;
     }
     if constexpr (HasSquaredValue<E>) row[0] *= detail::scale_at(data, e);
@@ -184,15 +186,15 @@ void ConstraintOperations<E>::gamma(const Block& block, const Data& data, Pose p
       const int e = timed.element;
       const detail::ElementFrames<E> f(block, data, pose, e);
       Taylor<double> rows[E::rows];
-      detail::taylor_rows(data.element[static_cast<std::size_t>(e)], f, {}, {}, detail::value_at(data, e), rows);
+      detail::taylor_rows(data.element[static_cast<std::size_t>(e)], f, {}, {}, detail::value_at(block, pose, e), rows);
       for (int r = 0; r < E::rows; ++r) out[block.row(e) + r] -= detail::scale_at(data, e) * rows[r].dd;
     }
   }
 }
 
 template <class E>
-ElementMatrix ConstraintOperations<E>::hessian(const Block& block, const Data& data, Pose pose, const double* lambda,
-                                               int e) {
+ElementMatrix ConstraintOperations<E>::hessian(const Block& block, const Data& data, const Pose& pose,
+                                               const double* lambda, int e) {
   using Inner = Dual<double, 6>;
   using Outer = Dual<Inner, 6>;
   const detail::ElementFrames<E> f(block, data, pose, e);
@@ -200,7 +202,7 @@ ElementMatrix ConstraintOperations<E>::hessian(const Block& block, const Data& d
   const auto j = seed<Inner, 6>(seed<double, 6>(f.j, 3), 3);
   Outer rows[E::rows];
   data.element[static_cast<std::size_t>(e)].phi(
-      Arguments<Outer>{i, j, Outer(Inner(detail::value_at(data, e).f)), f.ground, f.contact}, rows);
+      Arguments<Outer>{i, j, Outer(Inner(detail::value_at(block, pose, e).f)), f.ground, f.contact}, rows);
   ElementMatrix matrix{};
   for (int r = 0; r < E::rows; ++r) {
     const double weight = lambda[block.row(e) + r] * detail::scale_at(data, e);
@@ -212,7 +214,7 @@ ElementMatrix ConstraintOperations<E>::hessian(const Block& block, const Data& d
 }
 
 template <class E>
-void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data, Pose pose, const double* lambda,
+void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data, const Pose& pose, const double* lambda,
                                            bool convex, const int* slot, double* values) {
   constexpr auto pattern = hessian_pattern<E>();
   constexpr auto written = written_hessian<E>();
@@ -223,7 +225,8 @@ void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data,
         const detail::ElementFrames<E> f(block, data, pose, e);
         double weights[E::rows];
         for (int r = 0; r < E::rows; ++r) weights[r] = lambda[block.row(e) + r] * detail::scale_at(data, e);
-        data.element[static_cast<std::size_t>(e)].hessian(f.arguments(detail::value_at(data, e).f), weights, entries);
+        data.element[static_cast<std::size_t>(e)].hessian(f.arguments(detail::value_at(block, pose, e).f), weights,
+                                                          entries);
       } else {
         const ElementMatrix matrix = hessian(block, data, pose, lambda, e);
         for (std::size_t k = 0; k < pattern.size(); ++k) {
@@ -236,39 +239,41 @@ void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data,
 }
 
 template <class E>
-const char* ConstraintOperations<E>::trouble(const Block& block, const Data& data, Pose pose, int e) {
+const char* ConstraintOperations<E>::trouble(const Block& block, const Data& data, const Pose& pose, int e) {
   if constexpr (HasTrouble<E>) {
     const detail::ElementFrames<E> f(block, data, pose, e);
-    return data.element[static_cast<std::size_t>(e)].trouble(f.arguments(detail::value_at(data, e).f));
+    return data.element[static_cast<std::size_t>(e)].trouble(f.arguments(detail::value_at(block, pose, e).f));
   } else {
     return nullptr;
   }
 }
 
 template <class E>
-std::optional<CurveUse> ConstraintOperations<E>::curve_use(const Block& block, const Data& data, Pose pose, int e) {
+std::optional<CurveUse> ConstraintOperations<E>::curve_use(const Block& block, const Data& data, const Pose& pose,
+                                                           int e) {
   if constexpr (HasCurveUse<E>) {
     const E& element = data.element[static_cast<std::size_t>(e)];
     if (!element.can_leave_curve()) return {};
     const detail::ElementFrames<E> f(block, data, pose, e);
-    return element.curve_use(f.arguments(detail::value_at(data, e).f));
+    return element.curve_use(f.arguments(detail::value_at(block, pose, e).f));
   } else {
     return {};
   }
 }
 
 template <class E>
-LocalJacobian<E> ConstraintOperations<E>::local_jacobian(const Block& block, const Data& data, Pose pose, int e) {
+LocalJacobian<E> ConstraintOperations<E>::local_jacobian(const Block& block, const Data& data, const Pose& pose,
+                                                         int e) {
   LocalJacobian<E> local;
   const detail::ElementFrames<E> f(block, data, pose, e);
-  detail::derived_jacobian(data.element[static_cast<std::size_t>(e)], f, detail::value_at(data, e).f,
+  detail::derived_jacobian(data.element[static_cast<std::size_t>(e)], f, detail::value_at(block, pose, e).f,
                            local.entries.data());
   local.scale = detail::scale_at(data, e);
   return local;
 }
 
 template <class E>
-Measured ConstraintOperations<E>::measure(const Block& block, const Data& data, Pose pose, const double* qd,
+Measured ConstraintOperations<E>::measure(const Block& block, const Data& data, const Pose& pose, const double* qd,
                                           const double* qdd, int e) {
   if constexpr (Measuring<E>) {
     const detail::ElementFrames<E> f(block, data, pose, e);

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "catena/assembly/attachment_points.hpp"
+#include "catena/assembly/equations.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/model_part.hpp"
 
 namespace catena {
 namespace {
@@ -85,6 +87,67 @@ double length_without_joints(const Model& model) {
     if (const double found = length(model); found != 0) return found;
   }
   return 1;
+}
+
+// Points of constraints; where all points of a body are at its centroid, those of force elements; else the mean of what
+// it hangs together with, or the length scale. Every length comes from the scene, and from the same mechanism: what
+// stands beside it does not change where it is assembled.
+std::vector<double> Equations::attachment_radii(double* mean) const {
+  struct Points {
+    double squares = 0, sum = 0;
+    int count = 0;
+    void add(double square) {
+      squares += square;
+      sum += std::sqrt(square);
+      ++count;
+    }
+  };
+  std::vector<Points> held(at(plan_->bodies)), forced(at(plan_->bodies));
+  Points all;
+  for_each_list(model_->constraints, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      visit_points(entry, [&](const Vec2<double>& local, int body) {
+        if (body < 0) return;
+        const double square = squared_norm(local);
+        held[at(plan_->plan_body[at(body)])].add(square);
+        all.add(square);
+      });
+    }
+  });
+  for_each_list(model_->forces, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      visit_points(entry, [&](const Vec2<double>& local, int body) {
+        if (body >= 0) forced[at(plan_->plan_body[at(body)])].add(squared_norm(local));
+      });
+    }
+  });
+  std::vector<double> radius(held.size(), 0.0);
+  bool lacks = false;
+  for (std::size_t b = 0; b < radius.size(); ++b) {
+    const Points& of = held[b].squares > 0 ? held[b] : forced[b];
+    if (of.squares > 0) radius[b] = std::sqrt(of.squares / of.count);
+    lacks = lacks || (radius[b] == 0 && !model_->bodies[at(plan_->model_body[b])].particle);
+  }
+  if (lacks) {
+    for (const std::vector<int>& group : separate_groups(*model_)) {
+      Points own;
+      for (const int body : group) {
+        const Points& of = held[at(plan_->plan_body[at(body)])];
+        own.sum += of.sum;
+        own.count += of.count;
+      }
+      if (own.sum == 0) continue;
+      for (const int body : group) {
+        double& r = radius[at(plan_->plan_body[at(body)])];
+        if (r == 0) r = own.sum / own.count;
+      }
+    }
+  }
+  for (double& r : radius) {
+    if (r == 0) r = length_scale_;
+  }
+  if (mean) *mean = all.count > 0 ? all.sum / all.count : 0;
+  return radius;
 }
 
 }  // namespace catena

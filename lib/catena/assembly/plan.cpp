@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "catena/assembly/numbering.hpp"
 #include "catena/assembly/state_laws.hpp"
+#include "catena/assembly/structure/numbering.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
@@ -82,6 +82,8 @@ void number_rows(const Model& model, const std::vector<ElementEntry<E, double>>&
                  Plan& plan) {
   block.first_row = plan.rows;
   block.first_contact = plan.contacts;
+  block.first_value = plan.values;
+  if constexpr (E::functions > 0) plan.values += block.size();
   if constexpr (SearchesCurve<E>) {
     for (const auto& entry : list) plan.element_contact[at(entry.id)] = plan.contacts++;
   }
@@ -192,7 +194,11 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
     number_rows(model, list, block, *plan);
   });
   for_each_list(model.forces, [&](const auto& list, int) {
-    choose_elements(list, {}, *plan, std::get<ForceBlock<ElementOf<decltype(list)>>>(plan->forces));
+    using E = ElementOf<decltype(list)>;
+    auto& block = std::get<ForceBlock<E>>(plan->forces);
+    choose_elements(list, {}, *plan, block);
+    block.first_value = plan->loads;
+    plan->loads += E::functions * block.size();
   });
   if (!options.one_sided && !plan->gap_rows.empty()) {
     const int element = plan->row_element[at(plan->gap_rows.front())];

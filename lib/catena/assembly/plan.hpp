@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "catena/assembly/constraint_block.hpp"
-#include "catena/assembly/elimination.hpp"
 #include "catena/assembly/force_block.hpp"
+#include "catena/assembly/structure/elimination.hpp"
 #include "catena/linalg/patterns/sparse_pattern.hpp"
 #include "catena/model/model.hpp"
 
@@ -59,6 +59,8 @@ struct Plan {
   int columns = 0;      ///< unknown coordinates
   int rows = 0;         ///< constraint rows that are solved for
   int contacts = 0;     ///< elements that search on curves, with rows or without
+  int values = 0;       ///< constraints whose types have functions of time, with rows: Pose::values
+  int loads = 0;        ///< functions of time and laws of force elements: Pose::loads
   int driver_rows = 0;  ///< those of drivers
   int islands = 0;
 

@@ -15,8 +15,9 @@
 //   potential<T>(a)            V with Q = -V_q at rest and functions frozen; present if the element can have one
 //   conservative()             false where these parameters have no potential (a follower force); default: has
 //   dissipation(a)             power lost to damping, W (default 0)
-//   shares = true              its stiffness is in closed form, from what elements share (elastic_rope.hpp)
-//   complete(i, j), check(), can_leave_curve(), curve_use(a), draw(pen)    as for constraints
+//   shares = true              its stiffness is in closed form, from a.shared, which the elements of one spring find
+//   together (elastic_rope.hpp) complete(i, j), check(), can_leave_curve(), curve_use(a), draw(pen)    as for
+//   constraints
 //
 // Frames may be given relative to any common origin; `ground` is where that origin lies. Units: N, N m, J, W.
 #pragma once
@@ -37,6 +38,13 @@ struct Wrench {
   T fx{}, fy{}, moment{};
 };
 
+/// What elements that are one spring find together at a configuration; see elastic_rope.hpp.
+struct SharedStretch {
+  double stretch = 0;               ///< m, zero while slack
+  double g_i[3] = {}, g_j[3] = {};  ///< its gradient by the coordinates of bodies i and j of one element
+};
+inline constexpr SharedStretch no_stretch{};
+
 template <class T>
 struct ForceArguments {
   const Frame<T>& i;
@@ -45,6 +53,7 @@ struct ForceArguments {
   const Twist<T>& v;  ///< velocity of body j
   const T* f;         ///< values of the element's functions of time
   Vec2<double> ground;
+  const SharedStretch* shared = &no_stretch;  ///< at these frames, of elements that share
 };
 
 /// Adds the force F at the arm A s' from a body's centroid: Q += [F; (R A s')^T F].

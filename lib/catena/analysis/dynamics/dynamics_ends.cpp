@@ -12,7 +12,7 @@ namespace {
 // of a step moves faster than the step's error allows.
 constexpr int samples = 4;
 // Bodies that are driven turn far in one step: between two places no further than this, rad; ropes are followed over
-// 0.3 (evaluate_ropes.cpp).
+// 0.3 (equations_ropes.cpp).
 constexpr double most_turn = 0.25;
 
 }  // namespace

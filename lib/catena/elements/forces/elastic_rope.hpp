@@ -4,8 +4,8 @@
 //   Q = -N sum_k (f_k)_q       V_qq = N sum_k (f_k)_qq + k g g^T,   g = sum_k (f_k)_q   (taut)
 //
 // s depends on all bodies of the rope at once, but an element has two: each stretch is one, and each pair of bodies
-// that no stretch joins is one (a bridge), for its part of g g^T. What they share - N, and g on their bodies - is found
-// once a configuration and kept here (Evaluator::stretch_ropes). Symbols: k N/m, L > 0 m, N tension, N. The slope of N
+// that no stretch joins is one (a bridge), for its part of g g^T. What they share - s, and g on their bodies - is found
+// once a configuration and part of its pose (SharedStretch). Symbols: k N/m, L > 0 m, N tension, N. The slope of N
 // jumps where the rope becomes taut. Singular as rope_span.hpp. Source: rope_span.hpp; Haug, section 6.2.
 #pragma once
 
@@ -27,10 +27,6 @@ struct ElasticRope : RopeSpan<S> {
   bool bridge = false;
   int pieces = 0;                                          // of the first one: how many the rope has, in a row
   bool owns_i = false, owns_j = false, owns_pair = false;  // which blocks of g g^T are this element's
-
-  // Found by stretch_ropes().
-  double stretch = 0;               // s, zero while slack
-  double g_i[3] = {}, g_j[3] = {};  // g on bodies i and j
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &ElasticRope::s_i, 0, "the centre of its first circle"},
@@ -58,10 +54,12 @@ struct ElasticRope : RopeSpan<S> {
   }
   template <class T>
   void force(const ForceArguments<T>& a, Wrench<T>& on_i, Wrench<T>& on_j) const {
+    const double stretch = a.shared->stretch;
     if (stretch != 0) pull(T(k) * T(stretch), a.i, a.j, on_i, on_j);
   }
   template <class T>
-  T potential(const ForceArguments<T>&) const {
+  T potential(const ForceArguments<T>& a) const {
+    const double stretch = a.shared->stretch;
     return pieces > 0 ? T(0.5) * T(k) * T(stretch) * T(stretch) : T(0.0);
   }
   void stiffness(const ForceArguments<double>& a, double* entries) const {
@@ -69,6 +67,7 @@ struct ElasticRope : RopeSpan<S> {
     using Inner = Dual<double, 6>;
     using Outer = Dual<Inner, 6>;
     Outer f;
+    const auto& [stretch, g_i, g_j] = *a.shared;
     if (stretch != 0 && !bridge) {
       f = this->extent(seed<Inner, 6>(seed<double, 6>(a.i, 0), 0), seed<Inner, 6>(seed<double, 6>(a.j, 3), 3));
     }

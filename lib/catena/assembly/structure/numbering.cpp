@@ -1,4 +1,4 @@
-#include "catena/assembly/numbering.hpp"
+#include "catena/assembly/structure/numbering.hpp"
 
 #include <algorithm>
 #include <cstdlib>

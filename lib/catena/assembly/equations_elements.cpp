@@ -1,13 +1,12 @@
-// Evaluation of single elements: measured quantities, their part of Phi_q, their attachment points.
+// Evaluation of single elements: measured quantities, their part of Phi_q.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "catena/assembly/attachment_points.hpp"
 #include "catena/assembly/constraint_operations.hpp"
 #include "catena/assembly/curve_contacts.hpp"
-#include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/equations.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/elements/gap_element.hpp"
@@ -35,24 +34,24 @@ void for_each_part(const Model& model, int element, F&& f) {
 
 // Calls f(block, data, e) where the element is the block's e-th; not at all for one that is in no block.
 template <class F>
-void Evaluator::with_element(int element, F&& f) const {
+void Equations::with_element(int element, F&& f) const {
   const int e = place(element);
   if (e < 0 || model_->elements[at(element)].kind == ElementKind::force) return;
   with_list(plan_->blocks, model_->elements[at(element)].type, [&](const auto& block) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    f(block, std::get<ConstraintData<E>>(values_), e);
+    f(block, std::get<ConstraintData<E>>(constraints_), e);
   });
 }
 
 // A constraint that does not hold for the time being is in no block, but its measured quantity can be evaluated all the
 // same.
-Measured Evaluator::measure_released(int element, std::span<const double> qd) const {
+Measured Equations::measure_released(const Pose& pose, int element, std::span<const double> qd) const {
   Measured result;
   const ElementRecord& record = model_->elements[at(element)];
   const auto motion = [&](int body) {
     const int p = body < 0 ? plan_->bodies : plan_->plan_body[at(body)];
     const double* v = qd.empty() ? nullptr : &qd[at(3 * p)];
-    return moving(ground_frame(p), v ? v[0] : 0, v ? v[1] : 0, v ? v[2] : 0);
+    return moving(ground_frame(pose, p), v ? v[0] : 0, v ? v[1] : 0, v ? v[2] : 0);
   };
   with_list(model_->constraints, record.type, [&](const auto& list) {
     const auto& entry = list[at(record.index)];
@@ -60,26 +59,26 @@ Measured Evaluator::measure_released(int element, std::span<const double> qd) co
     if constexpr (Measuring<E>) {
       const Taylor<double> m =
           measure_of(entry.element, motion(entry.i), motion(entry.j),
-                     contact_of(std::get<ConstraintBlock<E>>(plan_->blocks), contacts_, record.index));
+                     contact_of(std::get<ConstraintBlock<E>>(plan_->blocks), pose.contacts, record.index));
       result = {m.f, m.d, m.dd};
     }
   });
   return result;
 }
 
-Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const double> qd) const {
+Equations::ScalarMotion Equations::scalar_motion(const Pose& pose, int element, std::span<const double> qd) const {
   ScalarMotion result;
   const ElementRecord& record = model_->elements[at(element)];
   with_list(model_->constraints, record.type, [&](const auto& list) {
     using E = ElementOf<decltype(list)>;
     if constexpr (E::rows == 1 && E::bodies == 2) {
       const auto& entry = list[at(record.index)];
-      const CurvePlace& contact = contact_of(std::get<ConstraintBlock<E>>(plan_->blocks), contacts_, record.index);
+      const CurvePlace& contact = contact_of(std::get<ConstraintBlock<E>>(plan_->blocks), pose.contacts, record.index);
       const auto plan_body = [&](int body) { return body < 0 ? plan_->bodies : plan_->plan_body[at(body)]; };
       const int i = result.body_i = plan_body(entry.i), j = result.body_j = plan_body(entry.j);
       // About the origin of body i, so that rounding does not grow with the distance from the ground's.
-      const Frame<double> frame_i = frames_[at(i)];
-      const Frame<double> frame_j = detail::shifted(frames_[at(j)], origin_[at(j)] - origin_[at(i)]);
+      const Frame<double> frame_i = pose.frames[at(i)];
+      const Frame<double> frame_j = detail::shifted(pose.frames[at(j)], origin_[at(j)] - origin_[at(i)]);
       const auto measure = [&]<class T>(const Frame<T>& fi, const Frame<T>& fj) {
         if constexpr (OneSided<E> && !Dry<E>) {
           return measure_of(entry.element, fi, fj, contact);
@@ -102,7 +101,7 @@ Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const do
     }
   });
   for_each_part(*model_, element, [&](int part) {
-    const ScalarMotion more = scalar_motion(part, qd);
+    const ScalarMotion more = scalar_motion(pose, part, qd);
     result.value += more.value;
     result.rate += more.rate;
     result.bend += more.bend;
@@ -112,19 +111,20 @@ Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const do
   return result;
 }
 
-Measured Evaluator::measure(int element, std::span<const double> qd, std::span<const double> qdd) const {
+Measured Equations::measure(const Pose& pose, int element, std::span<const double> qd,
+                            std::span<const double> qdd) const {
   Measured result;
   if (plan_->is_released(element)) {
-    result = measure_released(element, qd);
+    result = measure_released(pose, element, qd);
   } else {
     with_element(element, [&](const auto& block, const auto& data, int e) {
       using E = typename std::remove_cvref_t<decltype(block)>::Element;
-      result = ConstraintOperations<E>::measure(block, data, pose(), qd.empty() ? nullptr : qd.data(),
+      result = ConstraintOperations<E>::measure(block, data, pose, qd.empty() ? nullptr : qd.data(),
                                                 qdd.empty() ? nullptr : qdd.data(), e);
     });
   }
   for_each_part(*model_, element, [&](int part) {
-    const Measured more = measure(part, qd, qdd);
+    const Measured more = measure(pose, part, qd, qdd);
     result.value += more.value;
     result.rate += more.rate;
     result.second += more.second;
@@ -132,11 +132,11 @@ Measured Evaluator::measure(int element, std::span<const double> qd, std::span<c
   return result;
 }
 
-Evaluator::ElementJacobian Evaluator::element_jacobian(int element) const {
+Equations::ElementJacobian Equations::element_jacobian(const Pose& pose, int element) const {
   ElementJacobian result;
   with_element(element, [&](const auto& block, const auto& data, int e) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    const LocalJacobian<E> local = ConstraintOperations<E>::local_jacobian(block, data, pose(), e);
+    const LocalJacobian<E> local = ConstraintOperations<E>::local_jacobian(block, data, pose, e);
     result.rows = E::rows;
     result.bodies = E::bodies;
     result.body_i = block.body_i[at(e)];
@@ -149,16 +149,16 @@ Evaluator::ElementJacobian Evaluator::element_jacobian(int element) const {
   return result;
 }
 
-const char* Evaluator::trouble(int element) const {
+const char* Equations::trouble(const Pose& pose, int element) const {
   const char* phrase = nullptr;
   with_element(element, [&](const auto& block, const auto& data, int e) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    phrase = ConstraintOperations<E>::trouble(block, data, pose(), e);
+    phrase = ConstraintOperations<E>::trouble(block, data, pose, e);
   });
   return phrase;
 }
 
-std::optional<CurveUse> Evaluator::curve_use(int element) const {
+std::optional<CurveUse> Equations::curve_use(const Pose& pose, int element) const {
   std::optional<CurveUse> use;
   int body[2] = {plan_->bodies, plan_->bodies};
   const auto take = [&]<class E>(const auto& block, int e, std::optional<CurveUse> found, std::type_identity<E>) {
@@ -170,35 +170,35 @@ std::optional<CurveUse> Evaluator::curve_use(int element) const {
   if (e >= 0 && model_->elements[at(element)].kind == ElementKind::force) {
     with_list(plan_->forces, model_->elements[at(element)].type, [&](const auto& block) {
       using E = typename std::remove_cvref_t<decltype(block)>::Element;
-      const auto& data = std::get<ForceData<E>>(force_values_);
-      take(block, e, ForceOperations<E>::curve_use(block, data, frames_.data(), e), std::type_identity<E>{});
+      const auto& data = std::get<ForceData<E>>(forces_);
+      take(block, e, ForceOperations<E>::curve_use(block, data, pose, e), std::type_identity<E>{});
     });
   } else {
     with_element(element, [&](const auto& block, const auto& data, int k) {
       using E = typename std::remove_cvref_t<decltype(block)>::Element;
-      take(block, k, ConstraintOperations<E>::curve_use(block, data, pose(), k), std::type_identity<E>{});
+      take(block, k, ConstraintOperations<E>::curve_use(block, data, pose, k), std::type_identity<E>{});
     });
   }
-  if (use && use->end) use->end = ground_frame(body[use->body]).point(*use->end);
+  if (use && use->end) use->end = ground_frame(pose, body[use->body]).point(*use->end);
   return use;
 }
 
-void Evaluator::follow(std::span<CurvePlace> contacts) const {
+void Equations::follow(const Pose& pose, std::span<CurvePlace> contacts) const {
   follow_contacts(
-      *plan_, model_->constraints, origin_, [this](int body) { return frames_[at(body)]; }, contacts);
+      *plan_, model_->constraints, origin_, [&pose](int body) { return pose.frames[at(body)]; }, contacts);
 }
 
-void Evaluator::find_contacts() {
-  contacts_ = starts_;
-  follow(contacts_);
+void Equations::find_contacts(Pose& pose) const {
+  pose.contacts = pose.starts;
+  follow(pose, pose.contacts);
 }
 
-CurvePlace Evaluator::contact(int element) const {
+CurvePlace Equations::contact(const Pose& pose, int element) const {
   const int k = plan_->element_contact[at(element)];
-  return k < 0 ? no_contact : contacts_[at(k)];
+  return k < 0 ? no_contact : pose.contacts[at(k)];
 }
 
-void Evaluator::go_to_curve_places(std::span<const CurvePlace> places) {
+void Equations::go_to_curve_places(Pose& pose, std::span<const CurvePlace> places) const {
   bool moved = false;
   for (const CurvePlace& place : places) {
     if (place.element < 0 || at(place.element) >= place_.size())
@@ -206,85 +206,25 @@ void Evaluator::go_to_curve_places(std::span<const CurvePlace> places) {
                                   ", which the model does not have: it has " + std::to_string(place_.size()));
     const int k = plan_->element_contact[at(place.element)];
     if (k < 0) continue;
-    CurvePlace& start = starts_[at(k)];
+    CurvePlace& start = pose.starts[at(k)];
     moved = moved || start.s_i != place.s_i || start.s_j != place.s_j;
     start = place;
   }
-  if (moved) find_contacts();
+  if (moved) find_contacts(pose);
 }
 
-void Evaluator::go_to_given_curve_places() {
-  take_given_contacts(*plan_, model_->constraints, starts_);
-  find_contacts();
+void Equations::go_to_given_curve_places(Pose& pose) const {
+  take_given_contacts(*plan_, model_->constraints, pose.starts);
+  find_contacts(pose);
 }
 
-Taylor<double> Evaluator::element_value(int element) const {
+Taylor<double> Equations::element_value(const Pose& pose, int element) const {
   Taylor<double> value;
-  with_element(element, [&](const auto&, const auto& data, int e) {
-    if (!data.value.empty()) value = data.value[at(e)];
+  with_element(element, [&](const auto& block, const auto&, int e) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    if constexpr (E::functions > 0) value = pose.values[at(block.first_value + e)];
   });
   return value;
-}
-
-// Points of constraints; where all points of a body are at its centroid, those of force elements; else the mean of what
-// it hangs together with, or the length scale. Every length comes from the scene, and from the same mechanism: what
-// stands beside it does not change where it is assembled.
-std::vector<double> Evaluator::attachment_radii(double* mean) const {
-  struct Points {
-    double squares = 0, sum = 0;
-    int count = 0;
-    void add(double square) {
-      squares += square;
-      sum += std::sqrt(square);
-      ++count;
-    }
-  };
-  std::vector<Points> held(at(plan_->bodies)), forced(at(plan_->bodies));
-  Points all;
-  for_each_list(model_->constraints, [&](const auto& list, int) {
-    for (const auto& entry : list) {
-      visit_points(entry, [&](const Vec2<double>& local, int body) {
-        if (body < 0) return;
-        const double square = squared_norm(local);
-        held[at(plan_->plan_body[at(body)])].add(square);
-        all.add(square);
-      });
-    }
-  });
-  for_each_list(model_->forces, [&](const auto& list, int) {
-    for (const auto& entry : list) {
-      visit_points(entry, [&](const Vec2<double>& local, int body) {
-        if (body >= 0) forced[at(plan_->plan_body[at(body)])].add(squared_norm(local));
-      });
-    }
-  });
-  std::vector<double> radius(held.size(), 0.0);
-  bool lacks = false;
-  for (std::size_t b = 0; b < radius.size(); ++b) {
-    const Points& of = held[b].squares > 0 ? held[b] : forced[b];
-    if (of.squares > 0) radius[b] = std::sqrt(of.squares / of.count);
-    lacks = lacks || (radius[b] == 0 && !model_->bodies[at(plan_->model_body[b])].particle);
-  }
-  if (lacks) {
-    for (const std::vector<int>& group : separate_groups(*model_)) {
-      Points own;
-      for (const int body : group) {
-        const Points& of = held[at(plan_->plan_body[at(body)])];
-        own.sum += of.sum;
-        own.count += of.count;
-      }
-      if (own.sum == 0) continue;
-      for (const int body : group) {
-        double& r = radius[at(plan_->plan_body[at(body)])];
-        if (r == 0) r = own.sum / own.count;
-      }
-    }
-  }
-  for (double& r : radius) {
-    if (r == 0) r = length_scale_;
-  }
-  if (mean) *mean = all.count > 0 ? all.sum / all.count : 0;
-  return radius;
 }
 
 }  // namespace catena

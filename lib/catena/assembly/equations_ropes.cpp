@@ -22,28 +22,23 @@ constexpr double most_turned = most_turned_between_places;
 
 }  // namespace
 
-// s and g of every elastic rope at the present configuration.
-void Evaluator::stretch_ropes() {
+void Equations::stretch_ropes(Pose& pose) const {
   using E = ElasticRope<double>;
   const auto& block = std::get<ForceBlock<E>>(plan_->forces);
   if (block.size() == 0) return;
   const auto& list = std::get<std::vector<ElementEntry<E, double>>>(model_->forces);
-  auto& data = std::get<ForceData<E>>(force_values_);
+  const auto& data = std::get<ForceData<E>>(forces_);
   for (std::size_t head = 0; head < list.size(); head += at(list[head].element.pieces)) {
     const auto piece = [&](int n) { return at(place_[at(list[head + at(n)].id)]); };
     const int pieces = list[head].element.pieces;
     double stretch = -data.element[piece(0)].length;
-    for (int n = 0; n < pieces; ++n) {
-      E& element = data.element[piece(n)];
-      std::fill_n(element.g_i, 3, 0.0);
-      std::fill_n(element.g_j, 3, 0.0);
-    }
+    for (int n = 0; n < pieces; ++n) pose.stretches[piece(n)] = {};
     for (int n = 0; n < pieces; ++n) {
       const std::size_t e = piece(n);
       const E& span = data.element[e];
       if (span.bridge) continue;
-      const Frame<double> i = detail::shifted(frames_[at(block.body_i[e])], data.shift[e].i),
-                          j = detail::shifted(frames_[at(block.body_j[e])], data.shift[e].j);
+      const Frame<double> i = detail::shifted(pose.frames[at(block.body_i[e])], data.shift[e].i),
+                          j = detail::shifted(pose.frames[at(block.body_j[e])], data.shift[e].j);
       stretch += span.extent(i, j);
       double entries[6];
       span.gradient(PairGeometry(Arguments<double>{i, j, 0, {}}, span.s_i, span.s_j), entries);
@@ -51,17 +46,17 @@ void Evaluator::stretch_ropes() {
         for (int m = 0; m < pieces; ++m) {
           const std::size_t of = piece(m);
           if (block.body_i[of] == body) {
-            for (int k = 0; k < 3; ++k) data.element[of].g_i[k] += part[k];
+            for (int k = 0; k < 3; ++k) pose.stretches[of].g_i[k] += part[k];
           }
           if (block.body_j[of] == body) {
-            for (int k = 0; k < 3; ++k) data.element[of].g_j[k] += part[k];
+            for (int k = 0; k < 3; ++k) pose.stretches[of].g_j[k] += part[k];
           }
         }
       };
       add(block.body_i[e], entries);
       add(block.body_j[e], entries + 3);
     }
-    for (int n = 0; n < pieces; ++n) data.element[piece(n)].stretch = std::max(stretch, 0.0);
+    for (int n = 0; n < pieces; ++n) pose.stretches[piece(n)].stretch = std::max(stretch, 0.0);
   }
 }
 
@@ -170,9 +165,11 @@ double widest_contact(const Model& model, int rope) {
   return wraps_of(model, rope, [&](int body) { return model.frame(body); }).widest();
 }
 
-const char* Evaluator::rope_trouble(int element) const {
+const char* Equations::rope_trouble(const Pose& pose, int element) const {
   const ElementRecord& record = model_->elements[at(element)];
-  const auto frame = [&](int body) { return ground_frame(body < 0 ? plan_->bodies : plan_->plan_body[at(body)]); };
+  const auto frame = [&](int body) {
+    return ground_frame(pose, body < 0 ? plan_->bodies : plan_->plan_body[at(body)]);
+  };
   const Wraps wraps = wraps_of(*model_, element, frame);
   if (record.kind == ElementKind::force) {
     const auto& list = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model_->forces);
@@ -180,7 +177,7 @@ const char* Evaluator::rope_trouble(int element) const {
   }
   const auto& head = std::get<std::vector<ElementEntry<Rope<double>, double>>>(model_->constraints)[at(record.index)];
   const bool may_hold = plan_->element_row[at(element)] >= 0;
-  return wraps.trouble(may_hold && measure(element, {}, {}).value < taut * head.element.length);
+  return wraps.trouble(may_hold && measure(pose, element, {}, {}).value < taut * head.element.length);
 }
 
 }  // namespace catena

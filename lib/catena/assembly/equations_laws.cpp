@@ -1,7 +1,7 @@
 // Evaluation of laws of state: their values, derivatives and effects.
 #include <cmath>
 
-#include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/equations.hpp"
 #include "catena/assembly/law_values.hpp"
 #include "catena/base/at.hpp"
 
@@ -10,24 +10,24 @@ namespace {
 
 using D6 = Dual<double, 6>;
 
-/// The evaluator's state in plain numbers.
+/// A pose and its velocities in plain numbers.
 class PlainState {
  public:
-  PlainState(const Evaluator& evaluator, std::span<const Taylor<double>> functions, std::span<const double> qd)
-      : evaluator_(evaluator), functions_(functions), qd_(qd) {}
+  PlainState(const Equations& equations, const Pose& pose, std::span<const double> qd)
+      : equations_(equations), pose_(pose), qd_(qd) {}
 
-  double time() const { return evaluator_.time(); }
-  Frame<double> frame(int plan_body) const { return evaluator_.ground_frame(plan_body); }
+  double time() const { return pose_.time; }
+  Frame<double> frame(int plan_body) const { return equations_.ground_frame(pose_, plan_body); }
   Twist<double> twist(int plan_body) const {
     if (qd_.empty()) return {};
     const double* v = &qd_[at(3 * plan_body)];
     return {v[0], v[1], v[2]};
   }
-  double function(int number) const { return functions_[at(number)].f; }
+  double function(int number) const { return pose_.functions[at(number)].f; }
 
  private:
-  const Evaluator& evaluator_;
-  std::span<const Taylor<double>> functions_;
+  const Equations& equations_;
+  const Pose& pose_;
   std::span<const double> qd_;
 };
 
@@ -55,19 +55,20 @@ class SeededState {
 
 }  // namespace
 
-double Evaluator::law_value(int law, std::span<const double> qd) const {
-  const PlainState state(*this, function_, qd);
+double Equations::law_value(const Pose& pose, int law, std::span<const double> qd) const {
+  const PlainState state(*this, pose, qd);
   return LawValues<double, double, PlainState>(*model_, laws_, state).value(law);
 }
 
-std::array<double, 6> Evaluator::law_gradient(int law, int body, std::span<const double> qd) const {
-  const PlainState plain(*this, function_, qd);
+std::array<double, 6> Equations::law_gradient(const Pose& pose, int law, int body, std::span<const double> qd) const {
+  const PlainState plain(*this, pose, qd);
   const SeededState state(plain, body);
   return LawValues<D6, double, SeededState>(*model_, laws_, state).value(law).d;
 }
 
-const NamedTable<double>* Evaluator::left_table(int law, std::span<const double> qd, double& where) const {
-  const PlainState state(*this, function_, qd);
+const NamedTable<double>* Equations::left_table(const Pose& pose, int law, std::span<const double> qd,
+                                                double& where) const {
+  const PlainState state(*this, pose, qd);
   const LawValues<double, double, PlainState> values(*model_, laws_, state);
   const CompiledLaw<double>& compiled = laws_[at(law)];
   const NamedTable<double>* left = nullptr;
@@ -86,31 +87,32 @@ const NamedTable<double>* Evaluator::left_table(int law, std::span<const double>
   return left;
 }
 
-void Evaluator::read_laws(std::span<const double> qd) {
-  for_each_list(force_values_, [&](auto& data, int) {
-    for (const auto& lawful : data.lawful) data.value[at(lawful.place)] = law_value(lawful.law, qd);
-  });
+void Equations::law_values(const Pose& pose, std::span<const double> qd, std::span<double> out) const {
+  for (std::size_t k = 0; k < laws_.size(); ++k) out[k] = law_value(pose, static_cast<int>(k), qd);
 }
 
-int Evaluator::law_without_value() const {
+int Equations::law_without_value(std::span<const double> laws) const {
   int found = -1;
-  for_each_list(force_values_, [&](const auto& data, int) {
+  for_each_list(forces_, [&](const auto& data, int) {
     for (const auto& lawful : data.lawful) {
-      if (found < 0 && !std::isfinite(data.value[at(lawful.place)])) found = lawful.law;
+      if (found < 0 && !std::isfinite(laws[at(lawful.law)])) found = lawful.law;
     }
   });
   return found;
 }
 
-std::array<double, 6> Evaluator::law_effect(int law, std::span<const double> qd) const {
+std::span<const double> Equations::rates(const MovingPose& moving) const {
+  return {moving.qd, moving.qd ? at(plan_->coordinates()) : 0};
+}
+
+std::array<double, 6> Equations::law_effect(const MovingPose& moving, int law) const {
   std::array<double, 6> effect{};
   const CompiledLaw<double>& compiled = laws_[at(law)];
   const int e = place(compiled.element);
   if (e < 0) return effect;
   with_list(plan_->forces, model_->elements[at(compiled.element)].type, [&](const auto& block) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    effect = ForceOperations<E>::by_function(block, std::get<ForceData<E>>(force_values_), frames_.data(),
-                                             qd.empty() ? nullptr : qd.data(), e, compiled.place);
+    effect = ForceOperations<E>::by_function(block, std::get<ForceData<E>>(forces_), moving, e, compiled.place);
   });
   return effect;
 }

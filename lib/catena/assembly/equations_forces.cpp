@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/equations.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
@@ -40,10 +40,8 @@ void add_second_derivatives(const std::array<HessianEntry, n>& written, bool con
 
 }  // namespace
 
-void Evaluator::applied_forces(std::span<const double> qd, std::span<double> Q) {
-  ++counters.forces;
+void Equations::applied_forces(const MovingPose& moving, std::span<double> Q) const {
   const Plan& plan = *plan_;
-  if (!laws_.empty()) read_laws(qd);
   std::fill(Q.begin(), Q.end(), 0.0);
   const Vec2<double> g = model_->gravity;
   if (g.x != 0 || g.y != 0) {
@@ -56,59 +54,57 @@ void Evaluator::applied_forces(std::span<const double> qd, std::span<double> Q) 
   for_each_list(plan.forces, [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     if (block.size() > 0) {
-      ForceOperations<E>::add_forces(block, std::get<ForceData<E>>(force_values_), frames_.data(), qd.data(), Q.data());
+      ForceOperations<E>::add_forces(block, std::get<ForceData<E>>(forces_), moving, Q.data());
     }
   });
 }
 
-double Evaluator::potential_energy() const {
+double Equations::potential_energy(const Pose& pose) const {
   const Vec2<double> g = model_->gravity;
   double sum = 0;
-  for (int p = 0; p < plan_->bodies; ++p) sum -= mass_[at(p)] * dot(g, ground_frame(p).origin());
+  for (int p = 0; p < plan_->bodies; ++p) sum -= mass_[at(p)] * dot(g, ground_frame(pose, p).origin());
   for_each_list(plan_->forces, [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    sum += ForceOperations<E>::potential(block, std::get<ForceData<E>>(force_values_), frames_.data());
+    sum += ForceOperations<E>::potential(block, std::get<ForceData<E>>(forces_), pose);
   });
   return sum;
 }
 
-double Evaluator::dissipation(std::span<const double> qd) const {
+double Equations::dissipation(const MovingPose& moving) const {
   double sum = 0;
   for_each_list(plan_->forces, [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    sum += ForceOperations<E>::dissipation(block, std::get<ForceData<E>>(force_values_), frames_.data(), qd.data());
+    sum += ForceOperations<E>::dissipation(block, std::get<ForceData<E>>(forces_), moving);
   });
   return sum;
 }
 
-double Evaluator::load_power(std::span<const double> qd) {
-  if (!laws_.empty()) read_laws(qd);
+double Equations::load_power(const MovingPose& moving) const {
   double sum = 0;
   for_each_list(plan_->forces, [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    sum += ForceOperations<E>::load_power(block, std::get<ForceData<E>>(force_values_), frames_.data(), qd.data());
+    sum += ForceOperations<E>::load_power(block, std::get<ForceData<E>>(forces_), moving);
   });
   return sum;
 }
 
-bool Evaluator::conservative() const {
+bool Equations::conservative() const {
   bool all = true;
-  for_each_list(force_values_, [&](const auto& data, int) {
+  for_each_list(forces_, [&](const auto& data, int) {
     using E = typename std::remove_cvref_t<decltype(data.element)>::value_type;
     all = all && ForceOperations<E>::conservative(data);
   });
   return all;
 }
 
-void Evaluator::add_hessians(std::span<const double> lambda, Curvature curvature, const HessianSlots& slots,
-                             std::span<double> values) {
-  ++counters.hessians;
+void Equations::add_hessians(const MovingPose& moving, std::span<const double> lambda, Curvature curvature,
+                             const HessianSlots& slots, std::span<double> values) const {
   const bool convex = curvature == Curvature::convex;
   for_each_list(plan_->blocks, [&](const auto& block, int type) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     const auto add = [&](bool own, const int* slot, double* out) {
-      ConstraintOperations<E>::add_hessians(block, std::get<ConstraintData<E>>(values_), pose(), lambda.data(), own,
-                                            slot, out);
+      ConstraintOperations<E>::add_hessians(block, std::get<ConstraintData<E>>(constraints_), moving.pose,
+                                            lambda.data(), own, slot, out);
     };
     constexpr auto written = written_hessian<E>();
     add_second_derivatives(written, convex, length_scale_, slots.constraints[at(type)], add, values);
@@ -117,7 +113,7 @@ void Evaluator::add_hessians(std::span<const double> lambda, Curvature curvature
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     if (slots.forces[at(type)].empty()) return;
     const auto add = [&](bool own, const int* slot, double* out) {
-      ForceOperations<E>::add_stiffness(block, std::get<ForceData<E>>(force_values_), frames_.data(), own, slot, out);
+      ForceOperations<E>::add_stiffness(block, std::get<ForceData<E>>(forces_), moving, own, slot, out);
     };
     constexpr auto written = written_stiffness<E>();
     add_second_derivatives(written, convex, length_scale_, slots.forces[at(type)], add, values);

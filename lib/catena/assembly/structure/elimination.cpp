@@ -1,4 +1,4 @@
-#include "catena/assembly/elimination.hpp"
+#include "catena/assembly/structure/elimination.hpp"
 
 #include "catena/base/at.hpp"
 #include "catena/elements/constraints/weld.hpp"
