@@ -3,9 +3,11 @@
 
 #include "stress/cases.hpp"
 #include "stress/driven_digits.hpp"
+#include "stress/flutter_digits.hpp"
 #include "stress/moving_digits.hpp"
 #include "stress/path_digits.hpp"
 #include "stress/resting_digits.hpp"
+#include "stress/rope_digits.hpp"
 #include "stress/touching_digits.hpp"
 
 namespace catena::testing {
@@ -69,6 +71,22 @@ TEST(Digits, OfPathsAreThoseClaimed) {
   for (unsigned seed = first_case(); seed <= last_case(4000); ++seed) ++seen[add_path_digits(seed, claims)];
   print_shares("digits of paths", seen);
   claims.expect("paths");
+}
+
+TEST(Digits, OfPathsThatFlutterAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (unsigned seed = first_case(); seed <= last_case(4000); ++seed) ++seen[add_flutter_digits(seed, claims)];
+  print_shares("digits of paths that flutter", seen);
+  claims.expect("flutter");
+}
+
+TEST(Digits, OfRopesOnPulleysAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (unsigned seed = first_case(); seed <= last_case(4000); ++seed) ++seen[add_rope_digits(seed, claims)];
+  print_shares("digits of ropes on pulleys", seen);
+  claims.expect("ropes");
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "oracles/scene_text.hpp"
 #include "stress/cases.hpp"
 #include "stress/dense_mechanism.hpp"
+#include "stress/random_scene.hpp"
 
 namespace catena::testing {
 
@@ -212,12 +213,10 @@ inline TouchingCase pendulum_at_wall(RandomNumbers& random) {
   return c;
 }
 
-/// Adds the columns of one motion; how it went, in words.
-inline std::string add_touching_digits(unsigned seed, ClaimedDigits& claims) {
-  RandomNumbers random(seed);
-  static TouchingCase (*const kinds[])(RandomNumbers&) = {bouncing_ball, rubbing_block, pendulum_at_wall};
+/// Adds the columns of one motion by a random method; how it went, in words.
+inline std::string add_motion(TouchingCase c, RandomNumbers& random, const std::string& kind, unsigned seed,
+                              ClaimedDigits& claims) {
   static const char* const methods[] = {"auto", "rk8", "rk5", "adams"};
-  TouchingCase c = kinds[seed % 3](random);
   const int method = static_cast<int>(random(0, 3.999));
   const double tolerance = std::pow(10.0, random(-11, -4));
   c.scene["catena"] = 1;
@@ -228,7 +227,7 @@ inline std::string add_touching_digits(unsigned seed, ClaimedDigits& claims) {
                                       {"every", c.until / 9},
                                       {"method", methods[method]},
                                       {"tolerance", tolerance}}});
-  keep_scene("touching", seed, c.scene.dump(1));
+  keep_scene(kind, seed, c.scene.dump(1));
   const TextRun run = run_text(c.scene.dump());
   if (run.outcome.exit_code > 1) return "not valid: " + run.outcome.error_text;
   if (!run.analysis().report.ok()) return std::string(to_string(run.analysis().report.status));
@@ -239,9 +238,16 @@ inline std::string add_touching_digits(unsigned seed, ClaimedDigits& claims) {
     std::vector<long double> exact;
     for (const TouchingState& state : *states) exact.push_back(state[k]);
     claims.add(run, c.columns[k], exact,
-               "seed " + std::to_string(seed) + " " + text_of(tolerance) + " " + methods[method]);
+               kind + " " + std::to_string(seed) + " " + text_of(tolerance) + " " + methods[method]);
   }
   return "compared";
+}
+
+inline std::string add_touching_digits(unsigned seed, ClaimedDigits& claims) {
+  RandomNumbers random(seed);
+  static TouchingCase (*const kinds[])(RandomNumbers&) = {bouncing_ball, rubbing_block, pendulum_at_wall};
+  TouchingCase c = kinds[seed % 3](random);
+  return add_motion(std::move(c), random, "touching", seed, claims);
 }
 
 }  // namespace catena::testing

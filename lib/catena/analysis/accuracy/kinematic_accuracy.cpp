@@ -36,6 +36,7 @@ KinematicAccuracy::KinematicAccuracy(Kinematics& analysis, const ColumnSet& colu
 
 void KinematicAccuracy::keep(Row& row, const Snapshot& snapshot, std::span<const double> values) const {
   row.t = snapshot.t;
+  row.model = &snapshot.evaluator.model();
   row.q.assign(snapshot.q.begin(), snapshot.q.end());
   row.values.assign(values.begin(), values.end());
   row.curves = snapshot.evaluator.curve_places();
@@ -61,6 +62,7 @@ void KinematicAccuracy::take(const Snapshot& snapshot, std::span<const double> v
     next_ *= 2;
   }
   last_.t = snapshot.t;
+  last_.model = &snapshot.evaluator.model();
   last_.values.assign(values.begin(), values.end());
   ++count_;
 }
@@ -102,6 +104,7 @@ std::vector<double>& KinematicAccuracy::values_at(const Row& row, const State& s
 bool KinematicAccuracy::examine(const Row& row) {
   Evaluator& evaluator = analysis_.evaluator();
   DrivenSolver& solver = analysis_.solver();
+  if (row.model != &evaluator.model()) evaluator.set_model(*row.model);
   evaluator.set_time(row.t);
   evaluator.go_to_curve_places(row.curves);
   if (!(solver.factor_at(row.q) > 0)) return false;

@@ -33,7 +33,8 @@ namespace catena {
 
 class KinematicAccuracy final : public RowAccuracy {
  public:
-  /// Of the rows of analysis.run(); both must outlive this object.
+  /// Of the rows of analysis.run(); both must outlive this object, and so must the models that its evaluator has at the
+  /// rows: those of ropes differ where they have met and left pulleys.
   KinematicAccuracy(Kinematics& analysis, const ColumnSet& columns);
 
   void take(const Snapshot& snapshot, std::span<const double> values) override;
@@ -43,6 +44,7 @@ class KinematicAccuracy final : public RowAccuracy {
  private:
   struct Row {
     double t = 0;
+    const Model* model = nullptr;
     std::vector<double> q, values;
     std::vector<CurvePlace> curves{};  // where contacts are at q
   };

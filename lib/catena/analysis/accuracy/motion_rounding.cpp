@@ -32,16 +32,16 @@ MotionRounding::MotionRounding(Evaluator& evaluator) : length_(evaluator.length_
 }
 
 double MotionRounding::least_error(UnitKind unit) const {
-  const double rate = std::sqrt(square_);
+  const double rate = std::sqrt(square_), fastest = std::max(rate, rate_);
   switch (unit) {
     case UnitKind::velocity:
-      return thresholds::few_roundings * length_ * rate;
+      return thresholds::few_roundings * length_ * fastest;
     case UnitKind::angular_velocity:
-      return thresholds::few_roundings * rate;
+      return thresholds::few_roundings * fastest;
     case UnitKind::acceleration:
-      return thresholds::few_roundings * length_ * square_;
+      return thresholds::few_roundings * length_ * fastest * fastest;
     case UnitKind::angular_acceleration:
-      return thresholds::few_roundings * square_;
+      return thresholds::few_roundings * fastest * fastest;
     case UnitKind::force:
       return thresholds::few_roundings * force_;
     case UnitKind::torque:
@@ -56,6 +56,13 @@ double MotionRounding::least_error(UnitKind unit) const {
     default:
       return 0;
   }
+}
+
+double fastest_rate(const Snapshot& snapshot, double length) {
+  double rate = 0;
+  for (std::size_t c = 0; c < snapshot.qd.size(); ++c)
+    rate = std::max(rate, std::abs(snapshot.qd[c]) / (c % 3 == 2 ? 1 : length));
+  return rate;
 }
 
 }  // namespace catena

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/accuracy/flutter_place.hpp"
 #include "catena/analysis/balance/static_accuracy.hpp"
 #include "catena/base/at.hpp"
 
@@ -75,6 +76,9 @@ std::vector<double> PathAccuracy::digits(const PathReport& report) {
   for (std::size_t number = 0; number < rows_.size(); ++number) {
     if (!examine(rows_[number], std::binary_search(numbers.begin(), numbers.end(), number))) return {};
   }
+  for (const PathCritical& critical : report.critical) {
+    if (critical.flutter && !take_place_of_flutter(rows_[at(critical.row)])) return {};
+  }
   errors_.take_places(info_, evaluator_.length_scale());
   return errors_.digits();
 }
@@ -126,6 +130,18 @@ bool PathAccuracy::examine(const Row& row, bool disturbed) {
     if (std::isnan(row.values[k])) continue;
     errors_.take_error(k, std::abs(row.values[k] - mended_values_[k]) +
                               Disturbance::deviations * std::sqrt(square_[k] / Disturbance::disturbed_values));
+  }
+  return true;
+}
+
+// By what the columns change along the path as far as the row is off. False: that is not known.
+bool PathAccuracy::take_place_of_flutter(const Row& row) {
+  if (!path_.factorize(row.point)) return false;
+  const PathPoint tangent = path_.tangent(row.point, path_.along_parameter(1));
+  const double way = flutter_place_error(path_, row.point, tangent);
+  if (!(way <= largest_way) || !values_at(path_.advanced(row.point, tangent, largest_way), other_)) return false;
+  for (std::size_t k = 0; k < other_.size(); ++k) {
+    if (!std::isnan(row.values[k])) errors_.take_error(k, std::abs(other_[k] - row.values[k]) / largest_way * way);
   }
   return true;
 }

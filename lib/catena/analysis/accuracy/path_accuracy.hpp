@@ -1,6 +1,7 @@
 // How many digits of the columns of a path are right, its parameter among them: a row is a point of the path, and its
 // error the way to the nearest point of the true one. Limit points are no harder than others: there a small error of
-// the parameter makes a large one of the place, and both move along the path.
+// the parameter makes a large one of the place, and both move along the path. At flutter the place along the path
+// counts as well: the parameter of that row is the load at which values meet (flutter_place.hpp).
 //
 //   [ K      Phi_q^T  F_p ] [ dq      ]     [ r   ]         e = |c(row) - c(0)| + 2 sqrt(mean (c(k) - c(0))^2) / s
 //   [ Phi_q  0        Phi_p ] [ dlambda ] = - [ Phi ]
@@ -42,6 +43,7 @@ class PathAccuracy {
   };
   std::vector<std::size_t> chosen(const PathReport& report) const;
   bool examine(const Row& row, bool disturbed);
+  bool take_place_of_flutter(const Row& row);
   bool answer(const PathPoint& tangent, std::span<const double> right_side);
   bool disturb(const PathPoint& mended, const PathPoint& tangent, std::span<const double> rounding);
   bool values_at(const PathPoint& x, std::vector<double>& values);

@@ -76,13 +76,12 @@ void SecondRun::take(const Snapshot& snapshot, std::span<const double> values) {
 // The rate of a motion is that by which its velocities change, and that by which its bodies turn.
 void SecondRun::take_motion(const Snapshot& snapshot) {
   if (leaves_constraints_) motion_.drift = std::max(motion_.drift, snapshot.residual);
+  const double speed = fastest_rate(snapshot, motion_.length);
+  motion_.fastest = std::max(motion_.fastest, speed);
   if (!motion_.timed && !leaves_constraints_) return;
-  double speed = 0, change = 0;
-  for (std::size_t c = 0; c < snapshot.qd.size(); ++c) {
-    const double unit = c % 3 == 2 ? 1 : motion_.length;
-    speed = std::max(speed, std::abs(snapshot.qd[c]) / unit);
-    if (c < snapshot.qdd.size()) change = std::max(change, std::abs(snapshot.qdd[c]) / unit);
-  }
+  double change = 0;
+  for (std::size_t c = 0; c < snapshot.qdd.size(); ++c)
+    change = std::max(change, std::abs(snapshot.qdd[c]) / (c % 3 == 2 ? 1 : motion_.length));
   motion_.rate = std::max({motion_.rate, speed, speed > 0 ? change / speed : 0});
 }
 
@@ -136,6 +135,7 @@ std::vector<double> SecondRun::digits(const AnalysisReport& report) {
     return {};
   }
   find_jumps(first, second.changes, *other);
+  second.rounding.take_rate(motion_.fastest);
   compare(*other, second.rounding, common_rounding(static_cast<double>(report.counters.steps), first.most_of_one()));
   errors_.take_places(columns_.info(), motion_.length);
   return MotionAccuracy::claimed(errors_);

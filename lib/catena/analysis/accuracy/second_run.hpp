@@ -88,7 +88,7 @@ class SecondRun final : public RowAccuracy {
     std::int64_t given = 0, every = 1;  // of all rows one in so many is kept
   } rows_;
   struct {
-    double drift = 0, length = 1, rate = 0, first = 0;  // m, m, 1/s, s
+    double drift = 0, length = 1, rate = 0, fastest = 0, first = 0;  // m, m, 1/s, rad/s, s
     std::size_t coordinates = 0;
     bool timed = false;
   } motion_;

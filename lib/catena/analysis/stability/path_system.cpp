@@ -174,20 +174,14 @@ PathPoint PathSystem::advanced(const PathPoint& x, const PathPoint& t, double s)
   return result;
 }
 
-namespace {
-
-/// How far x is beyond the place at the distance s from `from` along the tangent t.
-double place_beyond(const Plan& plan, std::span<const double> weight, double scale, const PathPoint& x,
-                    const PathPoint& from, const PathPoint& t, double s) {
-  double place = t.p * (x.p - from.p) / (scale * scale) - s;
-  for (int c = 0; c < plan.columns; ++c) {
-    const std::size_t coordinate = at(plan.coordinate[at(c)]);
-    place += weight[at(c)] * t.q[at(c)] * (x.q[coordinate] - from.q[coordinate]);
+double PathSystem::way(const PathPoint& from, const PathPoint& x, const PathPoint& t) const {
+  double way = t.p * (x.p - from.p) / (scale_ * scale_);
+  for (int c = 0; c < plan_.columns; ++c) {
+    const std::size_t coordinate = at(plan_.coordinate[at(c)]);
+    way += weight_[at(c)] * t.q[at(c)] * (x.q[coordinate] - from.q[coordinate]);
   }
-  return place;
+  return way;
 }
-
-}  // namespace
 
 int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t, double s) {
   double before = 0;
@@ -198,7 +192,7 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     }
     refused_value_.reset();
     residual(x, given_);
-    const double place = place_beyond(plan_, weight_, scale_, x, from, t, s);
+    const double place = way(from, x, t) - s;
     const double force = system_.force_norm({given_.data(), at(plan_.columns)});
     const double rounding = k > 0 ? system_.rounding_force() : 0, scale = system_.force_scale(x.lambda) + rounding;
     const double error =

@@ -83,6 +83,8 @@ class PathSystem {
   /// x + s t.
   PathPoint advanced(const PathPoint& x, const PathPoint& t, double s) const;
 
+  /// <t, x - from>.
+  double way(const PathPoint& from, const PathPoint& x, const PathPoint& t) const;
   /// <a, b> of two directions.
   double product(const PathPoint& a, const PathPoint& b) const;
   /// The direction along the parameter alone, of length 1 to the side of `sign`.

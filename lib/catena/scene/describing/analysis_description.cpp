@@ -44,8 +44,9 @@ const AnalysisKey parameter{
 
 AnalysisDescription make(std::string_view name, std::string_view summary, std::string_view results, bool timed,
                          Keys keys) {
-  AnalysisDescription d{name, summary, results, timed, {type, set, from}};
+  AnalysisDescription d{name, summary, std::string(results), timed, {type, set, from}};
   d.keys.insert(d.keys.end(), keys.begin(), keys.end());
+  if (d.find("digits")) d.results += ", digits_note (why digits are not claimed, or not of all columns)";
   return d;
 }
 
@@ -66,7 +67,7 @@ std::vector<AnalysisDescription> describe_all() {
       make("dynamics", "Motion under forces over time.",
            "method, events, impulses (of constraints where velocities jump), estimated_error, singular (dead points), "
            "integrated_apart (how many groups of mechanisms "
-           "had steps of their own), digits_note (why digits are not claimed)",
+           "had steps of their own)",
            true,
            {outputs,
             until,

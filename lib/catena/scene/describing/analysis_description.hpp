@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -43,8 +44,8 @@ struct AnalysisKey {
 
 struct AnalysisDescription {
   std::string_view type, summary;
-  std::string_view results;  ///< its result fields besides rows, for explain
-  bool timed = false;        ///< rows at instants of time
+  std::string results;  ///< its result fields besides rows, for explain
+  bool timed = false;   ///< rows at instants of time
   std::vector<AnalysisKey> keys;
 
   const AnalysisKey* find(std::string_view key) const;

@@ -97,12 +97,12 @@ class DynamicsTask {
   /// `make`: another one, with other options.
   template <class Analysis, class Make>
   void run_or_estimate(Analysis& analysis, const PlanOptions& plan, Make make);
-  /// Has the rows told how many of their digits are right. Ropes that meet and leave pulleys change the mechanism in
-  /// ways that are not compared.
+  /// Has the rows told how many of their digits are right. Ropes that meet and leave pulleys change the mechanism.
   template <class Analysis, class Make>
   void judge(AnalysisRows& rows, Analysis& analysis, Make make) {
-    if (!context_.digits || context_.design || context_.checkpoint || !routes_.empty()) return;
-    const AskedMotion motion{sources, context_.state, *grid_, options_, changes_itself(), context_.cancel};
+    if (!context_.digits || context_.design || context_.checkpoint) return;
+    const bool changes = changes_itself() || follows_ropes();
+    const AskedMotion motion{sources, context_.state, *grid_, options_, changes, context_.cancel};
     rows.judge(accuracy_of_motion(analysis, rows.columns(), motion, make));
   }
   /// Runs what was prepared.
@@ -193,7 +193,8 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan, 
   run_over_time(context_, result_, both, *grid_, names_, sources, [&](AnalysisRows& rows) {
     differentiate(rows, analysis);
     if (!context_.digits || context_.design) return;
-    auto compared = std::make_unique<ComparedRows>(rows.columns());
+    auto compared =
+        std::make_unique<ComparedRows>(rows.columns(), [&analysis]() -> Evaluator& { return analysis.evaluator(); });
     both.show_asked(*compared);
     rows.judge(std::move(compared));
   });

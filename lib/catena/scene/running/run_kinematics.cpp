@@ -280,9 +280,8 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
         return drawn->at(snapshot.t);
       });
     }
-    // Where ropes meet pulleys the model changes on the way.
     const bool rubs = inverse_dynamics && !context.model->frictions().empty();
-    if (context.digits && !context.design && !rubs && !taut.any() && rope_routes(*context.model).empty())
+    if (context.digits && !context.design && !rubs)
       rows.judge(std::make_unique<KinematicAccuracy>(analysis, rows.columns()));
     if (context.design) differentiate(context, rows, analysis.evaluator());
   };
