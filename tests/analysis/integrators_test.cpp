@@ -60,10 +60,17 @@ TEST(Integrators, SumsOverStagesAreRoundedAsPlainLoopsRoundThem) {
         for (const StageTerm& term : terms)
           expected[i] += 0.01 * term.weight * slope[static_cast<std::size_t>(term.stage)][i];
       }
-      add_stages(
-          begins ? std::span<const double>(found) : std::span<const double>(), 0.01, terms,
-          [&](int stage) { return slope[static_cast<std::size_t>(stage)].data(); }, found);
+      std::vector<double> by_baseline = found;
+      const auto from = [&](const std::vector<double>& begin) {
+        return begins ? std::span<const double>(begin) : std::span<const double>();
+      };
+      const auto slope_of = [&](int stage) { return slope[static_cast<std::size_t>(stage)].data(); };
+      add_stages(from(found), 0.01, terms, slope_of, found);
       EXPECT_EQ(found, expected);
+      // The form of processors without wide registers, whatever this one has.
+      detail::add_weighted_baseline(detail::weighted_stages(from(by_baseline), 0.01, terms, slope_of), size,
+                                    by_baseline.data());
+      EXPECT_EQ(by_baseline, expected);
     }
   }
 }

@@ -19,22 +19,6 @@ void add_rest(const Weighted& sum, std::size_t i, std::size_t size, double* out)
   }
 }
 
-void add_baseline(const Weighted& sum, std::size_t size, double* out) {
-  constexpr std::size_t count = Lanes::count;
-  std::size_t i = 0;
-  for (; i + 2 * count <= size; i += 2 * count) {
-    Lanes x = sum.from ? Lanes::load(sum.from + i) : Lanes(),
-          y = sum.from ? Lanes::load(sum.from + i + count) : Lanes();
-    for (std::size_t t = 0; t < sum.terms; ++t) {
-      x += sum.weight[t] * Lanes::load(sum.vector[t] + i);
-      y += sum.weight[t] * Lanes::load(sum.vector[t] + i + count);
-    }
-    x.store(out + i);
-    y.store(out + i + count);
-  }
-  add_rest(sum, i, size, out);
-}
-
 #if defined(__x86_64__)
 // Products and sums are rounded one after the other here, too: results are those of any other processor.
 [[gnu::target("avx2")]] void add_avx2(const Weighted& sum, std::size_t size, double* out) {
@@ -63,12 +47,28 @@ void add_baseline(const Weighted& sum, std::size_t size, double* out) {
 
 }  // namespace
 
+void detail::add_weighted_baseline(const Weighted& sum, std::size_t size, double* out) {
+  constexpr std::size_t count = Lanes::count;
+  std::size_t i = 0;
+  for (; i + 2 * count <= size; i += 2 * count) {
+    Lanes x = sum.from ? Lanes::load(sum.from + i) : Lanes(),
+          y = sum.from ? Lanes::load(sum.from + i + count) : Lanes();
+    for (std::size_t t = 0; t < sum.terms; ++t) {
+      x += sum.weight[t] * Lanes::load(sum.vector[t] + i);
+      y += sum.weight[t] * Lanes::load(sum.vector[t] + i + count);
+    }
+    x.store(out + i);
+    y.store(out + i + count);
+  }
+  add_rest(sum, i, size, out);
+}
+
 void detail::add_weighted(const Weighted& sum, std::size_t size, double* out) {
 #if defined(__x86_64__)
   static const bool wide = __builtin_cpu_supports("avx2") != 0;
   if (wide) return add_avx2(sum, size, out);
 #endif
-  add_baseline(sum, size, out);
+  add_weighted_baseline(sum, size, out);
 }
 
 }  // namespace catena
