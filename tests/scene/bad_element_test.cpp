@@ -1,0 +1,107 @@
+// Wrong elements of a scene.
+#include <gtest/gtest.h>
+
+#include "scene/wrong_scenes.hpp"
+
+namespace catena::testing {
+namespace {
+
+using namespace wrong_scenes;
+
+class WrongElement : public ::testing::TestWithParam<BadScene> {};
+TEST_P(WrongElement, IsReportedAtItsPlace) { expect_report_of(GetParam()); }
+
+const BadScene elements[] = {
+    {"NoType", constraint("§{\"i\": \"crank\"}"), "needs a \"type\""},
+    {"UnknownType", constraint(R"({"type": §"revolut", "i": "crank", "j": "rod"})"), "did you mean \"revolute\"?"},
+    {"ForceAmongConstraints", constraint(R"({"type": §"torque", "i": "crank", "torque": 1})"), "belongs in \"forces\""},
+    {"ConstraintAmongForces", force(R"({"type": §"weld", "i": "crank", "j": "rod"})"), "belongs in \"constraints\""},
+    {"UndrivableDriver", two_bodies(R"("drivers": [{"type": §"revolute", "i": "crank", "j": "rod"}])"),
+     "no value that could be driven"},
+    {"DriverWithoutValue", two_bodies(R"("drivers": [§{"type": "absolute_angle", "i": "crank"}])"), "needs \"value\""},
+    {"UnknownElementKey", constraint(R"({"type": "absolute_x", "i": "crank", §"valeu": 1})"),
+     "did you mean \"value\"?"},
+    {"MissingJ", constraint(R"(§{"type": "revolute", "i": "crank"})"), "needs \"j\""},
+    {"MissingBody", constraint(R"({"type": "revolute", "i": §"crnk", "j": "rod"})"),
+     "there is no body \"crnk\"; did you mean \"crank\"?"},
+    {"MissingBodyBeforePoint", constraint(R"({"type": "revolute", "i": §"crnk.tip", "j": "rod"})"),
+     "there is no body \"crnk\""},
+    {"MissingPoint", constraint(R"({"type": "revolute", "i": "crank.§tpi", "j": "rod"})"), "did you mean \"tip\"?"},
+    {"ElementForBody", constraint(R"({"type": "absolute_x", "name": "A", "i": "crank"},
+                                     {"type": "revolute", "i": §"A", "j": "rod"})"),
+     "there is no body \"A\": that is a absolute_x"},
+    {"SelfJoint", constraint(R"(§{"type": "revolute", "i": "crank", "j": "crank.tip"})"),
+     "ties body \"crank\" to itself"},
+    {"GroundJoint", constraint(R"(§{"type": "weld", "i": "ground", "j": ["ground", [1, 0]]})"),
+     "ties the ground to itself"},
+    {"AbsoluteOfGround", constraint(R"(§{"type": "absolute_x", "i": "ground"})"), "may not be the ground"},
+    {"ZeroAxis",
+     constraint(R"({"type": "translational", "name": "guide", "i": "ground", "j": "rod", "axis_i": [§0, 0]})"),
+     "\"axis_i\" of translational \"guide\" has no direction"},
+    {"ZeroDistance", constraint(R"({"type": "absolute_distance", "i": "crank", "ground": [1, 1], "value": §0})"),
+     "use absolute_x and absolute_y, or a revolute joint"},
+    {"ZeroDistanceGiven", constraint(R"(§{"type": "coupler", "i": ["crank", [0.4, 0]], "j": "rod"})"),
+     "a revolute joint"},
+    {"NegativeDistance", constraint(R"({"type": "coupler", "i": "crank", "j": "rod", "value": §-1})"), "negative"},
+    {"ValueAndLength", constraint(R"({"type": "coupler", "i": "crank", "j": "rod", "value": 1, "length": §1})"),
+     "\"length\" is another name of \"value\""},
+    {"NameTwice", constraint(R"({"type": "absolute_x", "name": "A", "i": "crank"},
+                                {"type": "absolute_y", "name": §"A", "i": "crank"})"),
+     "the name \"A\" is used twice: an element in line 4 has it already"},
+    {"NameOfBody", constraint(R"({"type": "absolute_x", "name": §"rod", "i": "crank"})"), "a body in line 3"},
+    {"WrongUnit", constraint(R"({"type": "absolute_angle", "i": "crank", "value": §"30 mm"})"), "must be an angle"},
+    {"WrongUnitOfParameter", constraint(R"({"type": "absolute_angle", "i": "crank", "value": §"l"})"),
+     "must be an angle"},
+    {"UnknownParameter", constraint(R"({"type": "absolute_x", "i": "crank", "value": §"ll"})"), "did you mean \"l\"?"},
+    {"ExpressionName", constraint(R"({"type": "absolute_x", "i": "crank", "value": "=2*§m"})"), "m"},
+    {"AtAndPoint", constraint(R"({"type": "revolute", "i": §"crank.tip", "j": "rod", "at": [0, 0]})"), "\"at\""},
+    {"AttachmentNumber", constraint(R"({"type": "revolute", "i": §3, "j": "rod"})"), "\"body.point\""},
+    {"AttachmentPointInList", constraint(R"({"type": "revolute", "i": [§"crank.tip", [0, 0]], "j": "rod"})"),
+     "must name a body without a point"},
+    {"NotPositive", constraint(R"({"type": "gear", "i": "crank", "j": "rod", "radius_i": §-1, "radius_j": 1})"),
+     "must be above zero; it is -1"},
+    {"RequiredNumber", constraint(R"(§{"type": "gear", "i": "crank", "j": "rod", "radius_i": 1})"),
+     "needs \"radius_j\""},
+    {"Side",
+     constraint(R"({"type": "rack_pinion", "i": "crank", "j": "rod", "axis_i": [1, 0], "radius": 1, "side": §0})"),
+     "must be 1 or -1"},
+    {"Choice", force(R"({"type": "point_force", "i": "crank", "force": [0, 1], "frame": §"bdy"})"),
+     "did you mean \"body\"?"},
+    {"ForcePair", force(R"({"type": "point_force", "i": "crank", "force": §3})"), "two functions"},
+    {"FunctionKind", constraint(R"({"type": "absolute_x", "i": "crank", "value": {§"polynomail": [1]}})"),
+     "did you mean \"polynomial\"?"},
+    {"FunctionUnit", constraint(R"({"type": "absolute_x", "i": "crank", "value": {"polynomial": [0, §"3 rad/s"]}})"),
+     "must be a velocity"},
+    {"FunctionKey",
+     constraint(R"({"type": "absolute_x", "i": "crank", "value": {"harmonic": {"amplitude": 1, §"freq": 3}}})"),
+     "unknown key \"freq\"", 2},
+    {"FunctionMissing", constraint(R"({"type": "absolute_x", "i": "crank", "value": {"harmonic": §{"amplitude": 1}}})"),
+     "needs \"omega\""},
+    {"StepOrder", constraint(R"({"type": "absolute_x", "i": "crank",
+       "value": {"step": {"t0": 0, "t1": 1, "from": 0, "to": 1, "order": §4}}})"),
+     "must be 3 or 5"},
+    {"StepTimes", constraint(R"({"type": "absolute_x", "i": "crank",
+       "value": §{"step": {"t0": 1, "t1": 1, "from": 0, "to": 1}}})"),
+     "is no function of time"},
+    {"TableLengths", constraint(R"({"type": "absolute_x", "i": "crank",
+       "value": {"spline": {"t": [0, 1, 2], "value": §[0, 1]}}})"),
+     "3 times, but 2 values"},
+    {"SpringWithoutLaw", force(R"(§{"type": "spring_damper", "i": "crank", "j": "rod"})"),
+     "spring_damper needs \"k\" or \"curve\""},
+    {"CurveOfOnePair", force(R"({"type": "spring_damper", "i": "crank", "j": "rod", "curve": §[[0, 1]]})"),
+     "needs at least 2 points"},
+    {"CurveFallsBack", force(R"({"type": "spring_damper", "i": "crank", "j": "rod", "curve": §[[0, 1], [0, 2]]})"),
+     "must increase"},
+    {"CurveUnit", force(R"({"type": "spring_damper", "i": "crank", "j": "rod", "curve": [[0, 0], [§"1 N", 2]]})"),
+     "must be a length"},
+    {"CurveNoPair", force(R"({"type": "spring_damper", "i": "crank", "j": "rod", "curve": [§3]})"), "list of pairs"},
+    {"BushingOfNothing", force(R"(§{"type": "bushing", "i": "crank", "j": "rod"})"), "\"kx\""},
+    {"BushingUnit", force(R"({"type": "bushing", "i": "crank", "j": "rod", "kt": §"3 N/m"})"),
+     "must be a torsional stiffness"},
+    {"OnlyInCpp", force(R"({"type": §"custom_force", "i": "crank", "j": "rod"})"), "unknown type"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, WrongElement, ::testing::ValuesIn(elements), name_of);
+
+}  // namespace
+}  // namespace catena::testing
