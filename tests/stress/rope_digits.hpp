@@ -57,12 +57,12 @@ inline TouchingCase pendulum_on_peg(RandomNumbers& random) {
   const PegScene at(random, -0.15);
   TouchingCase c = at.scene(Json::object(), random(3, 12));
   c.columns = {"b.x", "b.y", "b.vx", "b.vy", "b.ax", "b.ay", "rope.force"};
-  const Real g = gravity_of_touching, length = std::hypot(Real(at.x), Real(at.y));
+  const Real fall = gravity_of_touching, length = std::hypot(Real(at.x), Real(at.y));
   const auto free = [=](int law, Real phi) {
     return law == 0 ? length : length - at.to_peg() - at.r * (phi - at.meeting());
   };
   const auto turning = [=](int law, const Vector& y) {
-    return -(g * std::sin(y[0]) - (law == 0 ? 0 : at.r) * y[1] * y[1]) / free(law, y[0]);
+    return -(fall * std::sin(y[0]) - (law == 0 ? 0 : at.r) * y[1] * y[1]) / free(law, y[0]);
   };
   c.exact = [=](const std::vector<double>& instants) -> std::optional<std::vector<TouchingState>> {
     MotionOfLaws motion;
@@ -79,7 +79,7 @@ inline TouchingCase pendulum_on_peg(RandomNumbers& random) {
       return 1 - law;
     };
     motion.scale = Vector(2);
-    motion.scale << 1, std::sqrt(g / at.size);
+    motion.scale << 1, std::sqrt(fall / at.size);
     motion.pace = at.pace();
     const Real start = std::atan2(Real(at.x), -Real(at.y));
     motion.y = Vector(2);
@@ -88,11 +88,11 @@ inline TouchingCase pendulum_on_peg(RandomNumbers& random) {
     for (const double t : instants) {
       if (!motion.go_to(t)) return std::nullopt;
       const Real phi = motion.y[0], w = motion.y[1], cosine = std::cos(phi), sine = std::sin(phi);
-      const Real l = free(motion.law, phi), inward = l * w * w, along = -g * sine, m = at.mirror;
+      const Real l = free(motion.law, phi), inward = l * w * w, along = -fall * sine, m = at.mirror;
       const Real r = motion.law == 0 ? 0 : at.r, h = motion.law == 0 ? 0 : at.h;
       states.push_back({m * (l * sine - r * cosine), -h - r * sine - l * cosine, m * l * w * cosine, l * w * sine,
                         m * (along * cosine - inward * sine), along * sine + inward * cosine,
-                        at.mass * (inward + g * cosine)});
+                        at.mass * (inward + fall * cosine)});
     }
     return states;
   };
@@ -104,7 +104,7 @@ inline TouchingCase weight_past_peg(RandomNumbers& random) {
   const double k = random(20, 80) * at.mass * gravity_of_touching / at.size;
   TouchingCase c = at.scene({{"k", k}}, random(2, 6));
   c.columns = {"b.x", "b.y", "b.vx", "b.vy", "b.ax", "b.ay", "rope.force"};
-  const Real g = gravity_of_touching, length = std::hypot(Real(at.x), Real(at.y));
+  const Real fall = gravity_of_touching, length = std::hypot(Real(at.x), Real(at.y));
   struct Way {
     Real length, ux, uy, contact;
   };
@@ -122,7 +122,7 @@ inline TouchingCase weight_past_peg(RandomNumbers& random) {
     motion.slope = [&](int law, const Vector& y) {
       const Way w = way(law, y);
       Vector rate(4);
-      rate << y[2], y[3], -pull(law, w) / at.mass * w.ux, -pull(law, w) / at.mass * w.uy - g;
+      rate << y[2], y[3], -pull(law, w) / at.mass * w.ux, -pull(law, w) / at.mass * w.uy - fall;
       return rate;
     };
     motion.margins = [&](int law, const Vector& y) {
@@ -132,7 +132,7 @@ inline TouchingCase weight_past_peg(RandomNumbers& random) {
     };
     motion.next = [](int law, std::size_t which, Vector&) { return law ^ (which == 0 ? 1 : 2); };
     motion.scale = Vector(4);
-    const Real speed = std::sqrt(g * at.size);
+    const Real speed = std::sqrt(fall * at.size);
     motion.scale << at.size, at.size, speed, speed;
     motion.pace = 0.2L * at.pace();
     motion.y = Vector(4);
@@ -197,12 +197,12 @@ inline std::string add_arm_about_peg(RandomNumbers& random, const std::string& w
 }
 
 inline std::string add_hoist(RandomNumbers& random, const std::string& what, ClaimedDigits& claims) {
-  const double m = std::pow(10.0, random(-2, 2)), r = std::pow(10.0, random(-2, 0)), g = gravity_of_touching;
-  const double inertia = m * r * r * random(0.1, 5), w = random(-2, 4) / r, half = random(-0.4, 1) * g / r;
+  const double m = std::pow(10.0, random(-2, 2)), r = std::pow(10.0, random(-2, 0)), fall = gravity_of_touching;
+  const double inertia = m * r * r * random(0.1, 5), w = random(-2, 4) / r, half = random(-0.4, 1) * fall / r;
   const double until = random(0.2, 1), below = random(10, 30) * r + 10, side = random(-1, 1) < 0 ? -1 : 1;
   const Json scene = {
       {"catena", 1},
-      {"gravity", {0, -g}},
+      {"gravity", {0, -fall}},
       {"bodies",
        {{"load", {{"particle", true}, {"mass", m}, {"position", {side * r, -below}}}},
         {"drum", {{"mass", 2}, {"inertia", inertia}}}}},
@@ -221,7 +221,7 @@ inline std::string add_hoist(RandomNumbers& random, const std::string& what, Cla
       {"outputs", {"load.y", "load.vy", "load.ay", "rope.force", "drive.load"}},
       {"analyses", Json::array({{{"type", "inverse_dynamics"}, {"until", until}, {"every", until / 40}}})}};
   const auto exact = [=](Real t) -> TouchingState {
-    const Real rate = w + 2 * half * t, change = 2 * Real(half), tension = m * (g + r * change);
+    const Real rate = w + 2 * half * t, change = 2 * Real(half), tension = m * (fall + r * change);
     return {-below + r * (w * t + half * t * t), r * rate, r * change, tension,
             side * (r * tension + inertia * change)};
   };
