@@ -107,18 +107,17 @@ class Oscillator {
   // A spring between points of two bodies (-1: the ground, there in ground axes), given in body axes; `stretch`: of its
   // length in parts of itself.
   void spring(int i, Vec2<double> s_i, int j, Vec2<double> s_j, double k, double stretch) {
-    using Wide = long double;
     const auto arm = [&](int b, const Vec2<double>& s) {
-      const Wide c = b < 0 ? 1 : std::cos(static_cast<Wide>(angle_[at(b)])),
-                 d = b < 0 ? 0 : std::sin(static_cast<Wide>(angle_[at(b)]));
-      return Vec2<Wide>{c * s.x - d * s.y, d * s.x + c * s.y};
+      const long double c = b < 0 ? 1 : std::cos(static_cast<long double>(angle_[at(b)])),
+                        d = b < 0 ? 0 : std::sin(static_cast<long double>(angle_[at(b)]));
+      return Vec2<long double>{c * s.x - d * s.y, d * s.x + c * s.y};
     };
-    const Vec2<Wide> a_i = arm(i, s_i), a_j = arm(j, s_j);
-    const Wide hx = (j < 0 ? 0 : x_[at(j)]) + a_j.x - (i < 0 ? 0 : x_[at(i)]) - a_i.x;
-    const Wide hy = (j < 0 ? 0 : y_[at(j)]) + a_j.y - (i < 0 ? 0 : y_[at(i)]) - a_i.y;
-    const Wide l = std::sqrt(hx * hx + hy * hy), nx = hx / l, ny = hy / l;
+    const Vec2<long double> a_i = arm(i, s_i), a_j = arm(j, s_j);
+    const long double hx = (j < 0 ? 0 : x_[at(j)]) + a_j.x - (i < 0 ? 0 : x_[at(i)]) - a_i.x;
+    const long double hy = (j < 0 ? 0 : y_[at(j)]) + a_j.y - (i < 0 ? 0 : y_[at(i)]) - a_i.y;
+    const long double l = std::sqrt(hx * hx + hy * hy), nx = hx / l, ny = hy / l;
     const double rest = static_cast<double>(l) * (1 - stretch);
-    const Wide tension = k * (l - rest);
+    const long double tension = k * (l - rest);
     if (stretch != 0) balanced_ = false;
     SpringDamper<double> element;
     element.s_i = length_ * s_i;
@@ -127,22 +126,22 @@ class Oscillator {
     element.length = stretch == 0 ? -1.0 : rest * length_;  // -1: as it is
     model->add_force("", element, i, j);
     // d h = sum side (dr + R a dphi), d2 h = -side a dphi^2; V'' = k n n^T + f/l (1 - n n^T) + f n . d2 h.
-    const auto column = [](const Vec2<Wide>& a, int c) {
-      return c == 0 ? Vec2<Wide>{1, 0} : c == 1 ? Vec2<Wide>{0, 1} : Vec2<Wide>{-a.y, a.x};
+    const auto column = [](const Vec2<long double>& a, int c) {
+      return c == 0 ? Vec2<long double>{1, 0} : c == 1 ? Vec2<long double>{0, 1} : Vec2<long double>{-a.y, a.x};
     };
     struct End {
       int b;
-      Vec2<Wide> a;
-      Wide side;
+      Vec2<long double> a;
+      long double side;
     };
     const End ends[2] = {{i, a_i, -1}, {j, a_j, 1}};
     for (const End& e : ends) {
       for (const End& f : ends) {
         for (int c = 0; e.b >= 0 && f.b >= 0 && c < 3; ++c) {
           for (int d = 0; d < 3; ++d) {
-            const Vec2<Wide> u = column(e.a, c), v = column(f.a, d);
-            const Wide un = u.x * nx + u.y * ny, vn = v.x * nx + v.y * ny, uv = u.x * v.x + u.y * v.y;
-            Wide value = e.side * f.side * (k * un * vn + (stretch == 0 ? 0 : tension / l) * (uv - un * vn));
+            const Vec2<long double> u = column(e.a, c), v = column(f.a, d);
+            const long double un = u.x * nx + u.y * ny, vn = v.x * nx + v.y * ny, uv = u.x * v.x + u.y * v.y;
+            long double value = e.side * f.side * (k * un * vn + (stretch == 0 ? 0 : tension / l) * (uv - un * vn));
             if (&e == &f && c == 2 && d == 2 && stretch != 0) value -= e.side * tension * (e.a.x * nx + e.a.y * ny);
             k_(3 * e.b + c, 3 * f.b + d) += value;
           }
