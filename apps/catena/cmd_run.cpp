@@ -53,7 +53,7 @@ const std::vector<Verb>& verbs() {
        {until,
         every,
         tolerance,
-        {"method", "integrator: auto, rk8, rk5, baumgarte, adams, partitioning, radau, rattle"},
+        {"method", "integrator: auto, rk8, rk5, baumgarte, adams, partitioning, radau, alpha, rattle"},
         {"step", "fixed step"},
         {"max_steps", "largest number of steps"},
         outputs}},

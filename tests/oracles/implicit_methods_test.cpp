@@ -193,10 +193,43 @@ double angle_by(const std::string& method, double step, double damping) {
 TEST(FixedSteps, HaveTheirOrder) {
   for (const double damping : {0.0, 0.5}) {
     SCOPED_TRACE(damping);
-    for (const auto& [method, order, step] : {std::tuple("radau", 5, 0.016), std::tuple("rattle", 2, 0.004)}) {
+    for (const auto& [method, order, step] :
+         {std::tuple("radau", 5, 0.016), std::tuple("alpha", 2, 0.004), std::tuple("rattle", 2, 0.004)}) {
       const double whole = angle_by(method, step, damping), half = angle_by(method, step / 2, damping),
                    quarter = angle_by(method, step / 4, damping);
       EXPECT_NEAR(std::log2(std::abs(whole - half) / std::abs(half - quarter)), order, 0.35) << method;
+    }
+  }
+}
+
+// Of a vibration with a thousand radians a step each step leaves the part rho; the slow motion is followed.
+TEST(Alpha, LeavesOfFastVibrationsWhatRhoSays) {
+  for (const double rho : {0.5, 0.8, 0.95}) {
+    const TextRun run = run_text(
+        R"({"catena": 1, "bodies": {"m": {"mass": 1, "particle": true, "position": [1.001, 0]}},
+        "constraints": [{"type": "absolute_y", "i": "m", "value": 0}],
+        "forces": [{"type": "spring_damper", "i": "ground", "j": "m", "k": 1e10, "length": 1}], "outputs": ["m.x"],
+        "analyses": [{"type": "dynamics", "digits": false, "method": "alpha", "step": 0.01, "rho": )" +
+        text_of(rho) + R"(, "at": [0.2, 0.6]}]})");
+    ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
+    // Both roots of the method tend to -rho; they stay two equal ones, so that a factor linear in steps stands before.
+    const double left = std::abs((run.last("m.x") - 1) / (run.first("m.x") - 1));
+    EXPECT_NEAR(std::log(left) / 40, std::log(rho), 0.03) << rho;
+  }
+}
+
+TEST(Alpha, StiffChainsMoveWithinItsTolerance) {
+  for (unsigned seed = 1; seed <= size_of_test(24u, 4u); ++seed) {
+    SCOPED_TRACE(seed);
+    const SpringChain chain(seed);
+    const TextRun run = run_text(chain.scene(R"({"type": "dynamics", "method": "alpha", "digits": false, "until": )" +
+                                             text_of(chain.end) + R"(, "every": )" + text_of(chain.end / 7) +
+                                             R"(, "tolerance": 1e-6})"));
+    ASSERT_TRUE(run.analysis().report.ok()) << run.outcome.error_text << run.analysis().report.message;
+    const std::vector<double> t = run.column("t");
+    for (std::size_t row = 0; row < t.size(); ++row) {
+      const Eigen::Vector3d exact = chain.exact(t[row]);
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(run.column("m" + std::to_string(k) + ".x")[row], k + 1 + exact[k], 1e-5);
     }
   }
 }
@@ -245,7 +278,7 @@ TEST(Rattle, AsksForAStep) {
 }
 
 TEST(ImplicitMethods, HaveNoDerivatives) {
-  for (const std::string method : {"radau", "rattle"}) {
+  for (const std::string method : {"radau", "alpha", "rattle"}) {
     const TextRun run = run_text(
         R"({"catena": 1, "parameters": {"k": 20}, "bodies": {"m": {"mass": 1, "particle": true, "position": [1, 0]}},
         "forces": [{"type": "spring_damper", "i": "ground", "j": "m", "k": "k", "length": 0.9}],

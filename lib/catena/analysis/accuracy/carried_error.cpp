@@ -21,6 +21,10 @@ constexpr double remembered = 0.9;
 // An error, in length scales or rad, whose effect is not in proportion any more: it is followed no further, and taken
 // for one of which no column has a right digit.
 constexpr double doubtful = 0.03, all_wrong = 1e6;
+// An error that turns so many times faster than the motion, and grows beyond that, has met a stiffness for which the
+// way it is followed by is not made: of a pendulum on a pivot of 1e6 N/m, 2000 times, it said that no digit was right
+// where twelve were. It is lost.
+constexpr double stiff = 100;
 // Evaluations times columns that are made whatever the run costs, and the part of the run's that are made beyond.
 constexpr double allowance = 10'000, part_of_run = 0.02;
 // Of an evaluation with the projections behind it, in evaluations.
@@ -124,6 +128,7 @@ void CarriedError::carry(const Integrator& integrator) {
   const double size = norm(error_);
   if (!std::isfinite(size)) lost_ = true;
   drowned_ = size > doubtful;
+  if (drowned_ && sharpest_ > stiff * rate_) lost_ = true;
   if (drowned_) std::fill(error_.begin(), error_.end(), all_wrong);
   if (lost_ || drowned_ || !(size > 0)) return;
   const double s = shift / size;

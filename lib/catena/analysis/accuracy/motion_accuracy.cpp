@@ -94,6 +94,12 @@ std::vector<double> MotionAccuracy::digits(const AnalysisReport& report) {
   return known ? claimed(*known) : std::vector<double>{};
 }
 
+std::string MotionAccuracy::why_none() const {
+  if (!carried_.lost()) return {};
+  return "no digits are claimed: the error could not be carried along with the motion, which passes a singular "
+         "position, is stiff, or would need more evaluations for it than a fiftieth of its own";
+}
+
 std::vector<double> MotionAccuracy::claimed(const ColumnErrors& errors) {
   std::vector<double> all = errors.digits();
   for (double& digits : all) {

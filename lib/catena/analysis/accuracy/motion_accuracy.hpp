@@ -40,6 +40,7 @@ class MotionAccuracy final : public RowAccuracy {
 
   void take(const Snapshot& snapshot, std::span<const double> values) override;
   std::vector<double> digits(const AnalysisReport& report) override;
+  std::string why_none() const override;
   /// Of the columns of a run that ended so; nullptr: nothing is known.
   const ColumnErrors* errors(const AnalysisReport& report);
   /// Digits as they are claimed: none where errors have no effect in proportion any more.

@@ -37,7 +37,7 @@ IntegrationMethod used_method(const Analysis& analysis) {
 inline bool wants_second_run(const AskedMotion& motion, IntegrationMethod method) {
   return motion.changes || method == IntegrationMethod::adams || method == IntegrationMethod::baumgarte ||
          method == IntegrationMethod::partitioning || method == IntegrationMethod::radau ||
-         method == IntegrationMethod::rattle;
+         method == IntegrationMethod::alpha || method == IntegrationMethod::rattle;
 }
 
 /// Of analysis.run(), which follows; both must outlive the result, and the columns. `make`: another analysis of the

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/dynamics/implicit/alpha.hpp"
 #include "catena/analysis/dynamics/implicit/radau.hpp"
 #include "catena/analysis/dynamics/implicit/rattle.hpp"
 #include "catena/analysis/dynamics/integrators/adams.hpp"
@@ -135,6 +136,11 @@ std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, doub
     case IntegrationMethod::radau:
       options.tolerance = implicit_part * options_.tolerance;
       return std::make_unique<Radau>(motion, options);
+    case IntegrationMethod::alpha:
+      return std::make_unique<Alpha>(motion, AlphaOptions{.rho = options_.rho,
+                                                          .tolerance = implicit_part * options_.tolerance,
+                                                          .fixed_step = options_.step,
+                                                          .horizon = horizon});
     case IntegrationMethod::rattle:
       return std::make_unique<Rattle>(motion, options_.step, horizon);
   }

@@ -15,12 +15,13 @@ enum class IntegrationMethod {
   adams,         ///< Adams, orders 1 to 12, with projection
   partitioning,  ///< Dormand-Prince, order 8, of independent coordinates
   radau,         ///< Radau IIA, order 5, for stiff forces
+  alpha,         ///< generalized-alpha, order 2, with damping of fast vibrations
   rattle,        ///< of order 2, steps of one length, energy bounded
 };
 
 /// The names used in scenes and results, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 8> integration_methods{"auto",  "rk8",          "rk5",   "baumgarte",
-                                                                     "adams", "partitioning", "radau", "rattle"};
+inline constexpr std::array<std::string_view, 9> integration_methods{
+    "auto", "rk8", "rk5", "baumgarte", "adams", "partitioning", "radau", "alpha", "rattle"};
 
 inline std::string_view to_string(IntegrationMethod method) {
   return integration_methods[static_cast<std::size_t>(method)];
@@ -34,6 +35,8 @@ struct DynamicsOptions {
   double tolerance = 1e-8;
   /// Fixed step, s; 0: chosen by the integrator.
   double step = 0;
+  /// Of `alpha`: what a step leaves of a vibration much faster than it, 0 ... 1.
+  double rho = 0.8;
   /// Whether `automatic` may go over to implicit steps where stiffness asks for them, and back; not where derivatives
   /// follow the steps.
   bool may_turn_implicit = true;

@@ -55,6 +55,9 @@ Report Dynamics::start() {
   if (method_ == IntegrationMethod::partitioning) {
     if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
   }
+  if (!(options_.rho >= 0 && options_.rho <= 1))
+    return {
+        Status::refused, fmt::format("\"rho\" of method alpha is a part, 0 ... 1, and not {:.6g}", options_.rho), {}};
   if (method_ == IntegrationMethod::rattle && !(options_.step > 0)) {
     return {Status::refused,
             "method rattle makes steps of one length, which its accuracy follows from: give \"step\", s",

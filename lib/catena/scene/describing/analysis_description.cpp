@@ -64,38 +64,42 @@ std::vector<AnalysisDescription> describe_all() {
       make("inverse_dynamics", "Loads of drivers and reactions in a driven mechanism over time.",
            "dof, mobility, singular, events", true,
            {outputs, until, every, at_times, free_motions, branch, events, replicated, digits, measures}),
-      make("dynamics", "Motion under forces over time.",
-           "method, events, impulses (of constraints where velocities jump), estimated_error, singular (dead points), "
-           "integrated_apart (how many groups of mechanisms "
-           "had steps of their own)",
-           true,
-           {outputs,
-            until,
-            every,
-            at_times,
-            tolerance,
-            {"method",
-             KeyKind::word,
-             "integrator: rk8, rk5 (Runge-Kutta) and adams (multistep, fewest evaluations in smooth motions) project "
-             "onto "
-             "the constraints after every step, baumgarte stabilises them and shows how they drift, partitioning "
-             "integrates independent coordinates, radau is implicit, for stiff springs and dampers, rattle keeps the "
-             "energy of long motions with a fixed step; auto takes adams for open chains of ten bodies and more, else "
-             "rk8",
-             {},
-             {},
-             {integration_methods.begin(), integration_methods.end()}},
-            {"step", KeyKind::number, "fixed step, s (default: chosen by the tolerance)", UnitKind::time},
-            {"max_steps", KeyKind::whole,
-             "largest number of steps, rejected ones included: the analysis ends when they do not suffice (default "
-             "10^7)"},
-            {"estimate_error", KeyKind::flag,
-             "whether to run it a second time, at a tenth of the tolerance or half the step: estimated_error is the "
-             "largest difference of the two at its rows, which are those of the finer run"},
-            events,
-            replicated,
-            digits,
-            measures}),
+      make(
+          "dynamics", "Motion under forces over time.",
+          "method, events, impulses (of constraints where velocities jump), estimated_error, singular (dead points), "
+          "integrated_apart (how many groups of mechanisms "
+          "had steps of their own)",
+          true,
+          {outputs,
+           until,
+           every,
+           at_times,
+           tolerance,
+           {"method",
+            KeyKind::word,
+            "integrator: rk8, rk5 (Runge-Kutta) and adams (multistep, fewest evaluations in smooth motions) project "
+            "onto "
+            "the constraints after every step, baumgarte stabilises them and shows how they drift, partitioning "
+            "integrates independent coordinates, radau is implicit, for stiff springs and dampers, alpha too, of order "
+            "2, rattle keeps the energy of long motions with a fixed step; auto takes adams for open chains of ten "
+            "bodies and more, else rk8, and goes over to radau where stiffness asks for it",
+            {},
+            {},
+            {integration_methods.begin(), integration_methods.end()}},
+           {"step", KeyKind::number, "fixed step, s (default: chosen by the tolerance)", UnitKind::time},
+           {"rho", KeyKind::number,
+            "of alpha: what a step leaves of a vibration much faster than it, 0 ... 1 (default 0.8)", UnitKind::none,
+            Domain::not_negative},
+           {"max_steps", KeyKind::whole,
+            "largest number of steps, rejected ones included: the analysis ends when they do not suffice (default "
+            "10^7)"},
+           {"estimate_error", KeyKind::flag,
+            "whether to run it a second time, at a tenth of the tolerance or half the step: estimated_error is the "
+            "largest difference of the two at its rows, which are those of the finer run"},
+           events,
+           replicated,
+           digits,
+           measures}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
            "energy, stable, neutral, negative_modes, flutter (pairs of complex omega2, of forces without a potential), "
            "free_motions and moving_freely (what nothing resists to second order), residual, solver, iterations, "

@@ -34,6 +34,7 @@ DynamicsOptions options_of(const AnalysisTask& task) {
   options.method = static_cast<IntegrationMethod>(task.word("method"));  // in the order of the key's words
   options.tolerance = task.number("tolerance", options.tolerance);
   options.step = task.number("step", options.step);
+  options.rho = task.number("rho", options.rho);
   options.max_steps = static_cast<std::int64_t>(task.number("max_steps", static_cast<double>(options.max_steps)));
   return options;
 }
@@ -170,8 +171,10 @@ std::string DynamicsTask::conflict() const {
   if (touches_ && context_.checkpoint)
     return "checkpoints do not keep the state of contacts: run without --checkpoint and --restart";
   if (context_.design && context_.checkpoint) return "derivatives and checkpoints do not go together";
-  if (context_.design &&
-      (options_.method == IntegrationMethod::radau || options_.method == IntegrationMethod::rattle)) {
+  if (options_.method != IntegrationMethod::alpha && context_.task.number("rho", -1) >= 0)
+    return "\"rho\" is how strongly method alpha damps, and the method is another: leave it out";
+  if (context_.design && (options_.method == IntegrationMethod::radau || options_.method == IntegrationMethod::alpha ||
+                          options_.method == IntegrationMethod::rattle)) {
     return fmt::format(
         "derivatives of a motion follow explicit steps, which those of method {} are not: leave \"method\" out",
         to_string(options_.method));

@@ -27,6 +27,9 @@ int place_of(const SparsePattern& pattern, int row, int column) {
   return static_cast<int>(std::lower_bound(begin, end, row) - pattern.row_index.begin());
 }
 
+// The matching that KLU orders by fills the matrix of a chain: of forty rods 94 % of all instructions were its own.
+Kernel kernel() { return is_compiled_in(Kernel::umfpack) ? Kernel::umfpack : Kernel::automatic; }
+
 }  // namespace
 
 ImplicitMatrix::ImplicitMatrix(const Motion& motion)
@@ -40,6 +43,25 @@ ImplicitMatrix::ImplicitMatrix(const Motion& motion)
   std::iota(rows.begin(), rows.end(), 0);
   tangent_.arrange(rows, true);
   const SparsePattern& pattern = tangent_.pattern();
+  if (!real_.analyze(pattern, kernel(), counters_).ok())
+    throw std::logic_error("ImplicitMatrix: the pattern has its whole diagonal");
+  for (int c = 0; c < plan_.columns; ++c) mass_slot_.push_back(place_of(pattern, c, c));
+  for (int r = plan_.columns; r < pattern.rows; ++r) compliance_slot_.push_back(place_of(pattern, r, r));
+  values_.assign(at(pattern.entries()), 0.0);
+  damping_ = values_;
+  jacobian_.assign(at(plan_.trash_slot()) + 1, 0.0);
+  motion_.equations().evaluator().start_jacobian(jacobian_);
+  loads_.assign(motion_.coordinates(), 0.0);
+  moved_loads_ = loads_;
+  moved_.assign(2 * motion_.coordinates(), 0.0);
+  x_.assign(columns_ + rows_, 0.0);
+  pair_r_.assign(2 * motion_.coordinates(), Complex());
+  pair_x_.assign(columns_ + rows_, Complex());
+  group_columns();
+}
+
+void ImplicitMatrix::analyze_pair() {
+  const SparsePattern& pattern = tangent_.pattern();
   std::vector<MatrixEntry> places;
   for (int c = 0; c < pattern.columns; ++c) {
     for (int k = pattern.column_start[at(c)]; k < pattern.column_start[at(c) + 1]; ++k) {
@@ -51,24 +73,9 @@ ImplicitMatrix::ImplicitMatrix(const Motion& motion)
   }
   SlottedPattern pair = build_pattern(2 * pattern.rows, 2 * pattern.columns, places);
   pair_slot_ = std::move(pair.slot);
-  // The matching that KLU orders by fills the matrix of a chain: of forty rods 94 % of all instructions were its own.
-  const Kernel kernel = is_compiled_in(Kernel::umfpack) ? Kernel::umfpack : Kernel::automatic;
-  if (!real_.analyze(pattern, kernel, counters_).ok() || !pair_.analyze(pair.pattern, kernel, counters_).ok())
+  if (!pair_.analyze(pair.pattern, kernel(), counters_).ok())
     throw std::logic_error("ImplicitMatrix: the pattern has its whole diagonal");
-  for (int c = 0; c < plan_.columns; ++c) mass_slot_.push_back(place_of(pattern, c, c));
-  for (int r = plan_.columns; r < pattern.rows; ++r) compliance_slot_.push_back(place_of(pattern, r, r));
-  values_.assign(at(pattern.entries()), 0.0);
-  damping_ = values_;
   pair_values_.assign(at(pair.pattern.entries()), 0.0);
-  jacobian_.assign(at(plan_.trash_slot()) + 1, 0.0);
-  motion_.equations().evaluator().start_jacobian(jacobian_);
-  loads_.assign(motion_.coordinates(), 0.0);
-  moved_loads_ = loads_;
-  moved_.assign(2 * motion_.coordinates(), 0.0);
-  x_.assign(columns_ + rows_, 0.0);
-  pair_r_.assign(2 * motion_.coordinates(), Complex());
-  pair_x_.assign(columns_ + rows_, Complex());
-  group_columns();
 }
 
 // Columns of the elements' part of which no two reach the same row, one after the other.
@@ -199,15 +206,19 @@ void ImplicitMatrix::find_compliance(double mu) {
   }
 }
 
-bool ImplicitMatrix::factorize(double real, Complex pair) {
+bool ImplicitMatrix::factorize(double real) {
   const std::span<const double> mass = motion_.equations().masses().mass;
   mu_ = real;
-  nu_ = pair;
-  const auto mass_of = [&](std::size_t c) { return mass[at(plan_.coordinate[c])]; };
   for (std::size_t k = 0; k < base_.size(); ++k) values_[k] = base_[k] + mu_ * damping_[k];
-  for (std::size_t c = 0; c < columns_; ++c) values_[at(mass_slot_[c])] += mu_ * mu_ * mass_of(c);
+  for (std::size_t c = 0; c < columns_; ++c) values_[at(mass_slot_[c])] += mu_ * mu_ * mass[at(plan_.coordinate[c])];
   find_compliance(mu_);
-  if (!real_.factorize(values_, counters_).ok()) return false;
+  return real_.factorize(values_, counters_).ok();
+}
+
+bool ImplicitMatrix::factorize(Complex pair) {
+  if (pair_slot_.empty()) analyze_pair();
+  const std::span<const double> mass = motion_.equations().masses().mass;
+  nu_ = pair;
   const auto set_pair = [&](std::size_t k, Complex value) {
     pair_values_[at(pair_slot_[4 * k])] = pair_values_[at(pair_slot_[4 * k + 3])] = value.real();
     pair_values_[at(pair_slot_[4 * k + 1])] = -value.imag();
@@ -216,7 +227,7 @@ bool ImplicitMatrix::factorize(double real, Complex pair) {
   for (std::size_t k = 0; k < base_.size(); ++k) set_pair(k, base_[k] + nu_ * damping_[k]);
   for (std::size_t c = 0; c < columns_; ++c) {
     const std::size_t k = at(mass_slot_[c]);
-    set_pair(k, base_[k] + nu_ * damping_[k] + nu_ * nu_ * mass_of(c));
+    set_pair(k, base_[k] + nu_ * damping_[k] + nu_ * nu_ * mass[at(plan_.coordinate[c])]);
   }
   find_compliance(std::abs(nu_));
   for (const int slot : compliance_slot_) set_pair(at(slot), values_[at(slot)]);

@@ -29,8 +29,10 @@ class ImplicitMatrix {
 
   /// Takes K, C and Phi_q at the state of the last evaluation, which was at (t, y). False: not finite.
   bool linearize(double t, Side side, std::span<const double> y);
-  /// Factors of both systems. False: one is singular.
-  bool factorize(double real, std::complex<double> pair);
+  /// Factors of the real system. False: it is singular.
+  bool factorize(double real);
+  /// The same of the complex one.
+  bool factorize(std::complex<double> pair);
   /// Solves for r, of size 2 coordinates, in place.
   void solve(std::span<double> r);
   /// The same for `re` + i `im`.
@@ -38,6 +40,7 @@ class ImplicitMatrix {
 
  private:
   using Complex = std::complex<double>;
+  void analyze_pair();
   void group_columns();
   void add_differences(double t, Side side, std::span<const double> y);
   template <class Visit>

@@ -50,7 +50,8 @@ bool Radau::prepare(double h) {
     linearized_ = fresh_ = true;
   }
   const RadauTableau& table = radau_tableau();
-  factored_h_ = matrix_.factorize(table.real / h, {table.pair_real / h, table.pair_imaginary / h}) ? h : 0;
+  const std::complex<double> pair(table.pair_real / h, table.pair_imaginary / h);
+  factored_h_ = matrix_.factorize(table.real / h) && matrix_.factorize(pair) ? h : 0;
   return factored_h_ > 0;
 }
 

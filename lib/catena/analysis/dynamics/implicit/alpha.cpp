@@ -1,0 +1,216 @@
+#include "catena/analysis/dynamics/implicit/alpha.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+
+namespace catena {
+namespace {
+
+constexpr int most_repetitions = 40;   // of Newton's method, for steps of one length; half a digit each
+constexpr int usual_repetitions = 10;  // a step that needs more is shortened
+// What is left of the equations of a step, as a part of the error that it may have: it does not disturb the estimate.
+constexpr double unsolved = 0.01;
+constexpr double cautious = 0.9;
+constexpr double shortest = 0.2, longest = 4;  // of steps that follow each other
+constexpr double starting_step = 0.02;         // parts of the time scale, times the cube root of the tolerance
+constexpr int most_trials = 100;
+
+}  // namespace
+
+Alpha::Alpha(Motion motion, const AlphaOptions& options) : motion_(motion), options_(options), matrix_(motion) {
+  for (auto* y : {&y_, &y_before_, &y_new_, &slope_, &slope_new_, &slope_before_}) y->assign(motion_.size(), 0.0);
+  own_.assign(motion_.coordinates(), 0.0);
+  own_new_ = own_;
+  residual_.assign(2 * motion_.coordinates(), 0.0);
+  am_ = (2 * options.rho - 1) / (options.rho + 1);
+  af_ = options.rho / (options.rho + 1);
+  g_ = 0.5 + af_ - am_;
+  b_ = (g_ + 0.5) * (g_ + 0.5) / 4;
+  scale_.step_tolerance = options.tolerance;
+  scale_.horizon = options.horizon;
+  scale_.length = motion_.equations().evaluator().length_scale();
+  scale_.set_masses(motion_.equations().masses().mass);
+}
+
+bool Alpha::start(double t, std::span<const double> y) {
+  t_ = t_before_ = t;
+  std::copy(y.begin(), y.end(), y_.begin());
+  if (!motion_.derivative(t_, Side::after, y_, slope_)) return false;
+  curve_places_ = motion_.equations().evaluator().curve_places();
+  std::copy(accelerations().begin(), accelerations().end(), own_.begin());
+  linearized_ = false;
+  last_h_ = factored_h_ = 0;
+  observe(0);
+  h_ = scale_.rate() > 0 ? starting_step * std::cbrt(scale_.tolerance()) / scale_.rate()
+                         : std::numeric_limits<double>::max();
+  return true;
+}
+
+void Alpha::observe(double h) {
+  const std::span<const double> y(y_), k(slope_);
+  scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
+                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
+}
+
+bool Alpha::advance(double limit) {
+  const bool fixed = options_.fixed_step > 0;
+  Evaluator& evaluator = motion_.equations().evaluator();
+  if (fixed) h_ = options_.fixed_step;
+  evaluator.take_turns(motion_.q(std::span(y_)));
+  for (int trial = 0; trial < most_trials; ++trial) {
+    evaluator.go_to_curve_places(curve_places_);
+    const double remaining = limit - t_;
+    const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
+    double h = lands ? remaining : h_;
+    // Two equal steps in place of a long one and a tiny one.
+    if (!lands && !fixed && 2 * h > remaining) h = remaining / 2;
+    if (h < scale_.smallest_step(t_) && !lands) return false;
+    t_new_ = lands ? limit : t_ + h;
+    if (!solve(h)) {
+      ++evaluator.counters.rejected;
+      if (fixed) return false;
+      h_ = h / 2;
+      linearized_ = false;
+      continue;
+    }
+    const double error = fixed ? 0 : error_of_step(h);
+    if (!(error < 1)) {
+      ++evaluator.counters.rejected;
+      h_ = h * std::clamp(cautious / std::cbrt(error), shortest, cautious);
+      continue;
+    }
+    if (!finish()) return false;
+    accept(h, error);
+    return true;
+  }
+  return false;
+}
+
+// q1 and v1 from A1.
+void Alpha::place(double h) {
+  const std::size_t n = motion_.coordinates();
+  for (std::size_t c = 0; c < n; ++c) {
+    y_new_[c] = y_[c] + h * (y_[n + c] + h * ((0.5 - b_) * own_[c] + b_ * own_new_[c]));
+    y_new_[n + c] = y_[n + c] + h * ((1 - g_) * own_[c] + g_ * own_new_[c]);
+  }
+}
+
+bool Alpha::solve(double h) {
+  const std::size_t n = motion_.coordinates();
+  if (!linearized_) {
+    if (!motion_.derivative(t_, Side::after, y_, slope_new_) || !matrix_.linearize(t_, Side::after, y_)) return false;
+    linearized_ = true;
+    factored_h_ = 0;
+  }
+  if (factored_h_ != h && !matrix_.factorize(std::sqrt((1 - am_) / ((1 - af_) * b_)) / h)) return false;
+  factored_h_ = h;
+  std::copy(own_.begin(), own_.end(), own_new_.begin());
+  double before = std::numeric_limits<double>::infinity();
+  const int most = options_.fixed_step > 0 ? most_repetitions : usual_repetitions;
+  for (int k = 0; k < most; ++k) {
+    place(h);
+    if (!motion_.derivative(t_new_, Side::before, y_new_, slope_new_)) return false;
+    for (std::size_t c = 0; c < n; ++c) {
+      residual_[c] = 0;
+      residual_[n + c] =
+          slope_new_[n + c] + (af_ * slope_[n + c] - (1 - am_) * own_new_[c] - am_ * own_[c]) / (1 - af_);
+    }
+    matrix_.solve(residual_);
+    for (std::size_t c = 0; c < n; ++c) residual_[c] /= b_ * h * h;
+    for (std::size_t c = 0; c < n; ++c) own_new_[c] += residual_[c];
+    const double change = size_of(std::span(residual_).first(n), h, b_ * h * h, g_ * h, unsolved);
+    if (!std::isfinite(change)) return false;
+    if (change <= 1) {
+      place(h);
+      return true;
+    }
+    if (change >= before) return false;
+    before = change;
+  }
+  return false;
+}
+
+// The largest change of an acceleration by what it makes of places and velocities, in units of `part` of the allowed
+// error and of what rounding makes of it.
+double Alpha::size_of(std::span<const double> change, double h, double of_place, double of_velocity, double part) {
+  const std::size_t n = motion_.coordinates();
+  const auto unit = [part](double of_tolerance, double of_both) { return of_both - (1 - part) * of_tolerance; };
+  double largest = 0;
+  for (std::size_t c = 0; c < motion_.moving(); ++c) {
+    const double speed = y_[n + c];
+    const double v_unit = unit(scale_.velocity_unit(c, 0, speed), scale_.velocity_unit(c, h, speed));
+    const double q_unit = unit(scale_.position_unit(c, 0), scale_.position_unit(c, h));
+    const double size = std::abs(change[c]) * std::max(v_unit > 0 ? of_velocity / v_unit : 0, of_place / q_unit);
+    if (!(size <= largest)) {
+      largest = size;
+      culprit_ = static_cast<int>(c);
+    }
+  }
+  return largest;
+}
+
+double Alpha::error_of_step(double h) {
+  const std::size_t n = motion_.coordinates();
+  const std::span<double> change = std::span(residual_).first(n);
+  for (std::size_t c = 0; c < n; ++c) change[c] = own_new_[c] - own_[c];
+  const double of_place = size_of(change, h, h * h * std::abs(b_ - 1.0 / 6), 0, 1);
+  const double ratio = last_h_ > 0 ? h / last_h_ : 0;
+  for (std::size_t c = 0; c < n; ++c)
+    change[c] = slope_new_[n + c] - slope_[n + c] - ratio * (slope_[n + c] - slope_before_[n + c]);
+  return std::max(of_place, size_of(change, h, 0, h / 12, 1));
+}
+
+// Takes the end of the step to the constraints and evaluates there.
+bool Alpha::finish() {
+  EquationsOfMotion& equations = motion_.equations();
+  if (equations.plan().rows > 0) {
+    if (!equations.factorize(t_new_, Side::before, motion_.q(std::span<const double>(y_new_)))) return false;
+    position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
+    if (!(position_residual_ < RungeKutta::largest_residual)) return false;
+    equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
+  }
+  return motion_.derivative(t_new_, Side::before, y_new_, slope_new_);
+}
+
+void Alpha::accept(double h, double error) {
+  const std::size_t n = motion_.coordinates();
+  for (std::size_t k = 2 * n; k < y_.size(); ++k) y_new_[k] = y_[k] + h / 2 * (slope_[k] + slope_new_[k]);
+  y_before_.swap(y_);
+  y_.swap(y_new_);
+  slope_before_.swap(slope_);
+  slope_.swap(slope_new_);
+  own_.swap(own_new_);
+  t_before_ = t_;
+  t_ = t_new_;
+  last_h_ = h;
+  curve_places_ = motion_.equations().evaluator().curve_places();
+  ++motion_.equations().evaluator().counters.steps;
+  observe(h);
+  linearized_ = false;
+  const double ratio = std::clamp(cautious / std::cbrt(std::max(error, 1e-6)), shortest, longest);
+  // Factors are made anew at every step; a length that stays keeps the second difference of accelerations exact.
+  if (ratio < 1 || ratio > 1.2)
+    h_ = h * ratio;
+  else
+    h_ = h;
+}
+
+void Alpha::interpolate(double t, std::span<double> y) {
+  const std::size_t n = motion_.coordinates();
+  const double h = t_ - t_before_, s = (t - t_before_) / h;
+  const double end = s * s * (3 - 2 * s), slope0 = h * s * (1 - s) * (1 - s), slope1 = -h * s * s * (1 - s);
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    const double k0 = k < n ? y_before_[n + k] : slope_before_[k], k1 = k < n ? y_[n + k] : slope_[k];
+    y[k] = (1 - end) * y_before_[k] + end * y_[k] + slope0 * k0 + slope1 * k1;
+  }
+}
+
+IntegratorMemory Alpha::memory() const {
+  IntegratorMemory memory = scale_.memory();
+  memory.step = h_;
+  return memory;
+}
+
+}  // namespace catena
