@@ -75,6 +75,45 @@ TEST(Integrators, SumsOverStagesAreRoundedAsPlainLoopsRoundThem) {
   }
 }
 
+// Without the velocities of stages: as with them, in the rows that are asked for alone.
+TEST(Integrators, StagesOfSecondOrderAreThoseOfTheFirst) {
+  constexpr std::size_t width = 4, rows = 5, size = width * rows;
+  constexpr double h = 0.3;
+  const Tableau& table = dormand_prince_8();
+  const auto stages = static_cast<std::size_t>(table.stages);
+  const auto some = [](double phase) {
+    std::vector<double> x;
+    for (std::size_t i = 0; i < size; ++i) x.push_back(std::sin(phase + static_cast<double>(3 * i)));
+    return x;
+  };
+  const std::vector<double> q0 = some(0.1), v0 = some(0.2);
+  std::vector<std::vector<double>> slope, velocity(stages, std::vector<double>(size));
+  for (std::size_t s = 0; s < stages; ++s) slope.push_back(some(1.0 + static_cast<double>(s)));
+  const std::vector<int> which{0, 3};
+  for (std::size_t s = 0; s <= stages; ++s) {
+    const StageSum& sum = s < stages ? table.a[s] : table.b;
+    std::vector<double> q(size), v(size), found_q(size, 7.0), found_v(size, 7.0);
+    add_stages(
+        q0, h, sum, [&](int k) { return velocity[static_cast<std::size_t>(k)].data(); }, q);
+    add_stages(
+        v0, h, sum, [&](int k) { return slope[static_cast<std::size_t>(k)].data(); }, v);
+    if (s < stages) velocity[s] = v;
+    const StageWeights& weights = second_order_weights()[s];
+    SecondOrderSum second{.q = q0.data(), .v = v0.data(), .way = h * weights.way, .terms = weights.terms};
+    for (std::size_t k = 0; k < weights.terms; ++k) {
+      second.slope[k] = slope[static_cast<std::size_t>(weights.stage[k])].data();
+      second.of_q[k] = h * h * weights.of_q[k];
+      second.of_v[k] = h * weights.of_v[k];
+    }
+    add_weighted_rows(second, which, width, found_q.data(), found_v.data());
+    for (std::size_t i = 0; i < size; ++i) {
+      const bool asked = i / width == 0 || i / width == 3;
+      EXPECT_NEAR(found_q[i], asked ? q[i] : 7.0, 1e-13) << s;
+      EXPECT_NEAR(found_v[i], asked ? v[i] : 7.0, 1e-13) << s;
+    }
+  }
+}
+
 TEST(Integrators, OfOrderEightConvergeWithItAtFixedSteps) {
   const std::vector<double> exact = state_after_fall({.tolerance = 1e-13});
   for (const IntegrationMethod method :

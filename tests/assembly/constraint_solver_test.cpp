@@ -247,5 +247,44 @@ TEST(ConstraintSolver, UnequalMassesKeepTheirDigits) {
   EXPECT_GE(compared, 10);
 }
 
+// Those that are refined, each by itself, are among them.
+TEST(ConstraintSolver, SolvesRowsAsOneByOne) {
+  constexpr std::size_t width = 8;
+  SchurRows scratch;
+  int at_once = 0, refined = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    Linkage linkage(seed, seed % 3 == 0);
+    const VectorXd mass = linkage.weights(seed % 2 == 0 ? 0.5 : 4);
+    ConstraintSolver solver(linkage.plan);
+    Counters counters;
+    solver.set_metric(view(mass));
+    ASSERT_TRUE(solver.factorize(linkage.values, counters));
+    if (solver.is_regularised()) continue;
+    ++(seed % 2 == 0 && solver.smallest_pivot_ratio() > 1e-2 ? at_once : refined);
+    const auto coordinates = static_cast<std::size_t>(mass.size()), rows = at(linkage.plan->rows);
+    std::vector<double> x(coordinates * width), lambda(rows * width);
+    std::vector<VectorXd> qdd, multipliers;
+    for (std::size_t p = 0; p < width; ++p) {
+      const VectorXd Q = linkage.any(mass.size()), gamma = linkage.any(static_cast<Eigen::Index>(rows));
+      for (std::size_t c = 0; c < coordinates; ++c) x[c * width + p] = Q[static_cast<Eigen::Index>(c)];
+      for (std::size_t r = 0; r < rows; ++r) lambda[r * width + p] = -gamma[static_cast<Eigen::Index>(r)];
+      qdd.emplace_back(mass.size());
+      multipliers.emplace_back(gamma.size());
+      solver.solve_motion(view(Q), view(gamma), view(qdd.back()), view(multipliers.back()), counters);
+    }
+    solver.solve_motion_rows(x, lambda, width, scratch, counters);
+    for (std::size_t p = 0; p < width; ++p) {
+      for (const int c : linkage.plan->coordinate)
+        EXPECT_NEAR(x[at(c) * width + p], qdd[p][c], 1e-14 * qdd[p].lpNorm<Eigen::Infinity>()) << seed;
+      for (std::size_t r = 0; r < rows; ++r)
+        EXPECT_NEAR(lambda[r * width + p], multipliers[p][static_cast<Eigen::Index>(r)],
+                    1e-14 * multipliers[p].lpNorm<Eigen::Infinity>())
+            << seed;
+    }
+  }
+  EXPECT_GE(at_once, 5);
+  EXPECT_GE(refined, 5);
+}
+
 }  // namespace
 }  // namespace catena

@@ -155,6 +155,30 @@ TEST(BlockFactorization, RoundsLanesAsNumbers) {
   }
 }
 
+TEST(BlockFactorization, RoundsRowsAsNumbers) {
+  Random random(76);
+  std::vector<double> work;
+  for (int trial = 0; trial < 100; ++trial) {
+    const int nodes = 1 + random.below(30), widest = 1 + random.below(9);
+    const NodalMatrix m = nodal_matrix(nodes, widest, random.uniform(0, 6), random);
+    const std::size_t width = 4 * (1 + static_cast<std::size_t>(random.below(3)));
+    Counters counters;
+    BlockFactorization factors;
+    factors.analyze(m.entries, m.order, m.node_start, counters);
+    ASSERT_TRUE(factors.factorize(m.lower.values, counters).ok());
+    std::vector<double> rows(m.order.size() * width), own(m.order.size());
+    for (double& x : rows) x = random.uniform(-1, 1);
+    std::vector<double> together = rows;
+    factors.solve_rows(together.data(), width, work, counters);
+    EXPECT_EQ(counters.solves, static_cast<std::int64_t>(width));
+    for (std::size_t p = 0; p < width; ++p) {
+      for (std::size_t k = 0; k < own.size(); ++k) own[k] = rows[k * width + p];
+      factors.solve(own, counters);
+      for (std::size_t k = 0; k < own.size(); ++k) EXPECT_EQ(together[k * width + p], own[k]) << trial;
+    }
+  }
+}
+
 TEST(BlockFactorization, NamesTheRowOfAVanishingPivot) {
   // Nodes {2, 0}, {1}: row 1 is left with 4 - 2 * 2 = 0.
   const Matrix lower = assemble(3, 3, {{0, 0, 1}, {1, 1, 4}, {2, 2, 3}, {1, 0, 2}, {2, 2, 0}});

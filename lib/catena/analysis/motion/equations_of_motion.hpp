@@ -58,6 +58,10 @@ class EquationsOfMotion {
                     std::span<Lanes> lambda, SchurLanes& scratch) {
     system_.solve_motion(loads, gamma, qdd, lambda, scratch, evaluator_.counters);
   }
+  /// The same for rows of `width` right-hand sides, see ConstraintSolver.
+  void solve_motion_rows(std::span<double> x, std::span<double> rows, std::size_t width, SchurRows& scratch) {
+    system_.solve_motion_rows(x, rows, width, scratch, evaluator_.counters);
+  }
   /// Multipliers of the solver's rows at the last accelerations().
   std::span<const double> multipliers() const { return lambda_; }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "catena/linalg/kernels/lanes.hpp"
+#include "catena/linalg/kernels/packs.hpp"
 
 namespace catena {
 namespace {
@@ -45,6 +46,50 @@ void add_rest(const Weighted& sum, std::size_t i, std::size_t size, double* out)
 }
 #endif
 
+StageWeights weights_of(const StageSum& sum, const Tableau& table) {
+  std::array<double, 12> of_q{}, of_v{};
+  StageWeights weights;
+  for (const StageTerm& outer : sum) {
+    weights.way += outer.weight;
+    of_v[static_cast<std::size_t>(outer.stage)] += outer.weight;
+    for (const StageTerm& inner : table.a[static_cast<std::size_t>(outer.stage)])
+      of_q[static_cast<std::size_t>(inner.stage)] += outer.weight * inner.weight;
+  }
+  for (std::size_t s = 0; s < of_q.size(); ++s) {
+    if (of_q[s] == 0 && of_v[s] == 0) continue;
+    const std::size_t k = weights.terms++;
+    weights.stage[k] = static_cast<int>(s);
+    weights.of_q[k] = of_q[s];
+    weights.of_v[k] = of_v[s];
+  }
+  return weights;
+}
+
+struct SecondOrderKernel {
+  const SecondOrderSum& sum;
+  std::span<const int> rows;
+  std::size_t width;
+  double *q, *v;
+
+  template <class P>
+  void run(std::size_t first) const {
+    for (const int row : rows) {
+      const std::size_t i = static_cast<std::size_t>(row) * width + first;
+      P place, rate, slope;
+      packs::load(place, sum.q + i);
+      packs::load(rate, sum.v + i);
+      place += sum.way * rate;
+      for (std::size_t k = 0; k < sum.terms; ++k) {
+        packs::load(slope, sum.slope[k] + i);
+        place += sum.of_q[k] * slope;
+        rate += sum.of_v[k] * slope;
+      }
+      packs::store(place, q + i);
+      packs::store(rate, v + i);
+    }
+  }
+};
+
 }  // namespace
 
 void detail::add_weighted_baseline(const Weighted& sum, std::size_t size, double* out) {
@@ -61,6 +106,21 @@ void detail::add_weighted_baseline(const Weighted& sum, std::size_t size, double
     y.store(out + i + count);
   }
   add_rest(sum, i, size, out);
+}
+
+const std::array<StageWeights, 13>& second_order_weights() {
+  static const std::array<StageWeights, 13> weights = [] {
+    std::array<StageWeights, 13> of{};
+    const Tableau& table = dormand_prince_8();
+    for (std::size_t s = 0; s + 1 < of.size(); ++s) of[s] = weights_of(table.a[s], table);
+    of.back() = weights_of(table.b, table);
+    return of;
+  }();
+  return weights;
+}
+
+void add_weighted_rows(const SecondOrderSum& sum, std::span<const int> rows, std::size_t width, double* q, double* v) {
+  packs::with_packs(SecondOrderKernel{sum, rows, width, q, v}, width);
 }
 
 void detail::add_weighted(const Weighted& sum, std::size_t size, double* out) {

@@ -200,7 +200,7 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
   const bool accelerates = !snapshot.qdd.empty();
   if (accelerates) {
     if (!RecomputedSteps::evaluate(there, t, Side::after)) return false;
-    tangents_->slope(MotionTangents::place_of(there), rows_.now, rows_.slope);
+    tangents_->accelerations(MotionTangents::place_of(there), rows_.now, rows_.accelerations);
   }
   const std::size_t width = tangents_->width();
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
@@ -219,7 +219,7 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
       take(rows_.now, n_ + c, group.qd[c]);
       if (!accelerates) continue;
       group.qdd[c] = there.slope[n_ + c];
-      take(rows_.slope, n_ + c, group.qdd[c]);
+      take(rows_.accelerations, c, group.qdd[c]);
     }
     for (std::size_t r = 0; accelerates && r < group.lambda.size(); ++r) {
       group.lambda[r] = there.lambda[r];

@@ -28,8 +28,8 @@ MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignMod
   again_ = std::make_unique<RecomputedSteps>(this->evaluator());
   if (!again_->why_not().empty()) return;
   tangents_ = std::make_unique<MotionTangents>(this->evaluator(), mechanisms());
-  for (auto* rows : {&rows_.begin, &rows_.end, &rows_.now, &rows_.slope})
-    rows->assign(2 * n_ * tangents_->width(), 0.0);
+  for (auto* rows : {&rows_.begin, &rows_.end, &rows_.now}) rows->assign(2 * n_ * tangents_->width(), 0.0);
+  rows_.accelerations.assign(n_ * tangents_->width(), 0.0);
 }
 
 bool MotionDerivatives::singular(double t) {

@@ -63,9 +63,10 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
     DesignVector begin, end, before, after;
     std::vector<DesignVector> stage;
   };
-  /// Of all parameters beside each other: y where the step begins and ends, y and its slope at the instant asked for.
+  /// Of all parameters beside each other: y where the step begins and ends, y and accelerations at the instant asked
+  /// for.
   struct TangentRows {
-    MotionTangents::Rows begin, end, now, slope;
+    MotionTangents::Rows begin, end, now, accelerations;
   };
 
   bool begin_stages(double from, double to, std::span<const double> y) override;

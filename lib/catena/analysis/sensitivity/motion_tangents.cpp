@@ -7,6 +7,7 @@
 #include "catena/base/design_scalar.hpp"
 
 namespace catena {
+
 MotionTangents::MotionTangents(const Evaluator& evaluator, std::vector<DesignMechanism*> groups)
     : plan_(evaluator.plan()),
       groups_(std::move(groups)),
@@ -14,16 +15,16 @@ MotionTangents::MotionTangents(const Evaluator& evaluator, std::vector<DesignMec
       n_(at(plan_.coordinates())),
       width_(groups_.size() * parameters_at_once) {
   for (const DesignMechanism* group : groups_) reached_.emplace_back(mechanism_, *group);
-  slopes_.assign(16, Rows(2 * n_ * width_));
+  accelerations_.assign(16, Rows(n_ * width_));
   stage_.resize(2 * n_ * width_);
-  loads_.resize(n_ * width_);
   rows_.resize(at(plan_.rows) * width_);
-  lambda_ = rows_;
   masses_.assign(n_, 0.0);
-  for (auto* v : {&f_, &x_}) v->resize(n_);
-  for (auto* v : {&b_, &mu_}) v->resize(at(plan_.rows));
   for (int c = 0; c < 3 * plan_.moving; ++c) {
-    if (plan_.column[at(c)] >= 0) masses_[at(c)] = groups_.front()->mass(c).v;
+    all_.push_back(c);
+    if (plan_.column[at(c)] >= 0)
+      masses_[at(c)] = groups_.front()->mass(c).v;
+    else
+      no_unknowns_.push_back(c);
   }
 }
 
@@ -35,14 +36,9 @@ void MotionTangents::add_parameters(double t, Side side, std::span<const double>
   }
 }
 
-void MotionTangents::solve(EquationsOfMotion& equations, const Rows& loads, const Rows& rows, double* x) {
-  for (std::size_t first = 0; first < width_; first += parameters_at_once) {
-    for (std::size_t c = 0; c < n_; ++c) f_[c] = Lanes::load(loads.data() + c * width_ + first);
-    for (std::size_t r = 0; r < b_.size(); ++r) b_[r] = -Lanes::load(rows.data() + r * width_ + first);
-    equations.solve_motion(f_, b_, x_, mu_, scratch_);
-    for (const int c : plan_.coordinate) x_[at(c)].store(x + at(c) * width_ + first);
-    for (std::size_t r = 0; r < mu_.size(); ++r) mu_[r].store(lambda_.data() + r * width_ + first);
-  }
+void MotionTangents::solve(EquationsOfMotion& equations, std::span<double> x) {
+  equations.solve_motion_rows(x, rows_, width_, scratch_);
+  for (const int c : no_unknowns_) std::fill_n(x.begin() + static_cast<std::ptrdiff_t>(at(c) * width_), width_, 0.0);
 }
 
 MotionTangents::Place MotionTangents::place_of(Stage& stage) {
@@ -56,16 +52,15 @@ MotionTangents::Place MotionTangents::place_of(Stage& stage) {
           .lambda = stage.lambda};
 }
 
-void MotionTangents::slope(const Place& place, const Rows& y, Rows& slope) {
+void MotionTangents::accelerations(const Place& place, const Rows& y, Rows& out) {
   mechanism_.set_motion(place.evaluator, place.qd, place.qdd, place.side);
-  std::fill(loads_.begin(), loads_.end(), 0.0);
+  std::fill(out.begin(), out.end(), 0.0);
   std::fill(rows_.begin(), rows_.end(), 0.0);
-  const TangentSums sums{.loads = loads_, .bends = rows_};
+  const TangentSums sums{.loads = out, .bends = rows_};
   const std::span<const double> all(y);
   mechanism_.add_along(place.evaluator, place.lambda, all.first(n_ * width_), all.subspan(n_ * width_), width_, sums);
   add_parameters(place.t, place.side, place.lambda, place.qdd, sums);
-  std::copy(y.begin() + static_cast<std::ptrdiff_t>(n_ * width_), y.end(), slope.begin());
-  solve(place.equations, loads_, rows_, slope.data() + n_ * width_);
+  solve(place.equations, out);
 }
 
 void MotionTangents::step(RecomputedSteps& steps, double h, const Rows& begin, Rows& end) {
@@ -73,24 +68,48 @@ void MotionTangents::step(RecomputedSteps& steps, double h, const Rows& begin, R
   finish_step(h, begin, end);
 }
 
+void MotionTangents::add_second_order(const StageWeights& of, double h, const Rows& begin, std::span<const int> which,
+                                      Rows& y) const {
+  SecondOrderSum sum{.q = begin.data(), .v = begin.data() + n_ * width_, .way = of.way * h, .terms = of.terms};
+  for (std::size_t k = 0; k < of.terms; ++k) {
+    sum.slope[k] = accelerations_[at(of.stage[k])].data();
+    sum.of_q[k] = h * h * of.of_q[k];
+    sum.of_v[k] = h * of.of_v[k];
+  }
+  add_weighted_rows(sum, which, width_, y.data(), y.data() + n_ * width_);
+}
+
 void MotionTangents::step_stage(int s, const Place& place, double h, const Rows& begin) {
-  add_stages(
-      begin, h, dormand_prince_8().a[at(s)], [this](int stage) { return slopes_[at(stage)].data(); }, stage_);
-  slope(place, stage_, slopes_[at(s)]);
+  add_second_order(second_order_weights()[at(s)], h, begin, mechanism_.read_coordinates(), stage_);
+  accelerations(place, stage_, accelerations_[at(s)]);
 }
 
 void MotionTangents::finish_step(double h, const Rows& begin, Rows& end) const {
-  add_stages(
-      begin, h, dormand_prince_8().b, [this](int stage) { return slopes_[at(stage)].data(); }, end);
+  add_second_order(second_order_weights().back(), h, begin, all_, end);
 }
 
+// The velocities of all stages are wanted here: those of the step first.
 void MotionTangents::prepare_interpolant(RecomputedSteps& steps, double h, const Rows& begin, const Rows& end) {
   const Tableau& table = dormand_prince_8();
-  slope(place_of(steps.stage(table.stages)), end, slopes_[at(table.stages)]);
-  for (int s = table.stages + 1; s < static_cast<int>(table.c.size()); ++s) {
+  const std::size_t part = n_ * width_;
+  velocities_.resize(table.c.size());
+  const auto find_velocities = [&](std::size_t s) {
+    velocities_[s].resize(part);
     add_stages(
-        begin, h, table.a[at(s)], [this](int stage) { return slopes_[at(stage)].data(); }, stage_);
-    slope(place_of(steps.stage(s)), stage_, slopes_[at(s)]);
+        std::span(begin).subspan(part), h, table.a[s], [this](int k) { return accelerations_[at(k)].data(); },
+        velocities_[s]);
+  };
+  const auto last = at(table.stages);
+  for (std::size_t s = 0; s < last; ++s) find_velocities(s);
+  velocities_[last].assign(end.begin() + static_cast<std::ptrdiff_t>(part), end.end());
+  accelerations(place_of(steps.stage(table.stages)), end, accelerations_[last]);
+  for (std::size_t s = last + 1; s < table.c.size(); ++s) {
+    find_velocities(s);
+    add_stages(
+        std::span(begin).first(part), h, table.a[s], [this](int k) { return velocities_[at(k)].data(); },
+        std::span(stage_).first(part));
+    std::copy(velocities_[s].begin(), velocities_[s].end(), stage_.begin() + static_cast<std::ptrdiff_t>(part));
+    accelerations(place_of(steps.stage(static_cast<int>(s))), stage_, accelerations_[s]);
   }
 }
 
@@ -98,7 +117,9 @@ void MotionTangents::interpolate(double part, double h, const Rows& begin, const
   const InterpolantWeights weights = interpolant_weights(part);
   for (std::size_t i = 0; i < y.size(); ++i) y[i] = begin[i] + weights.end * (end[i] - begin[i]);
   for (std::size_t s = 0; s < weights.slope.size(); ++s) {
-    if (weights.slope[s] != 0) add_times(y, h * weights.slope[s], slopes_[s]);
+    if (weights.slope[s] == 0) continue;
+    add_times(std::span(y).first(n_ * width_), h * weights.slope[s], velocities_[s]);
+    add_times(std::span(y).subspan(n_ * width_), h * weights.slope[s], accelerations_[s]);
   }
 }
 
@@ -124,11 +145,11 @@ void MotionTangents::project_with_factors(Stage& stage, Rows& y) {
       mechanism_.add_along(stage.evaluator, {}, all.first(n_ * width_), all.subspan(n_ * width_), width_, sums);
     }
     add_parameters(stage.t, stage.side, {}, {}, sums);
-    double* part = y.data() + (velocity ? n_ * width_ : 0);
+    const std::span<double> part = std::span(y).subspan(velocity ? n_ * width_ : 0, n_ * width_);
     for (std::size_t c = 0; c < n_; ++c) {
-      for (std::size_t p = 0; p < width_; ++p) loads_[c * width_ + p] = masses_[c] * part[c * width_ + p];
+      for (std::size_t p = 0; p < width_; ++p) part[c * width_ + p] *= masses_[c];
     }
-    solve(stage.equations, loads_, rows_, part);
+    solve(stage.equations, part);
   }
 }
 

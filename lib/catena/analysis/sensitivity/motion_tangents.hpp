@@ -6,12 +6,15 @@
 // at every stage, with the factors that its accelerations were found with; right-hand sides from matrices of elements
 // that are evaluated once for all parameters (mechanism_tangents.hpp). The equations are those of
 // motion_derivatives.hpp. Derivatives lie in rows of `width()` numbers a coordinate of y = [q, qd]; those of
-// coordinates that are no unknowns are zero here and count among what parameters change by themselves. Not where
-// constraints depend on each other, nor for models that AdjointMechanism refuses.
+// coordinates that are no unknowns are zero here and count among what parameters change by themselves. Stages of q_p
+// are those of a second-order equation, whose velocities are left out (StageWeights); only rows that the right-hand
+// sides read are made. Not where constraints depend on each other, nor for models that AdjointMechanism refuses.
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "catena/analysis/motion/stage_sums.hpp"
 #include "catena/analysis/sensitivity/recomputed_steps.hpp"
 #include "catena/assembly/design/mechanism_tangents.hpp"
 
@@ -49,27 +52,31 @@ class MotionTangents {
   bool project(Stage& stage, double t, Side side, Rows& y);
   /// The same with the factors that the stage has.
   void project_with_factors(Stage& stage, Rows& y);
-  /// Derivatives of accelerations and multipliers where these were found: rows n() ... 2 n() of `slope`.
-  void slope(const Place& place, const Rows& y, Rows& slope);
-  /// Rows of multipliers of the last slope().
-  const Rows& multipliers() const { return lambda_; }
+  /// Derivatives of accelerations and multipliers where these were found.
+  void accelerations(const Place& place, const Rows& y, Rows& out);
+  /// Rows of multipliers of the last accelerations().
+  const Rows& multipliers() const { return rows_; }
 
  private:
   void add_parameters(double t, Side side, std::span<const double> lambda, std::span<const double> qdd,
                       const TangentSums& sums);
-  /// Solves for all parameters: loads and rows (negative right-hand sides) to x over coordinates, and lambda_.
-  void solve(EquationsOfMotion& equations, const Rows& loads, const Rows& rows, double* x);
+  /// Solves for all parameters: loads to x in place, rows_ to multipliers.
+  void solve(EquationsOfMotion& equations, std::span<double> x);
+
+  /// y = [q, qd] where the stage is evaluated, or at the end, in the rows of these coordinates.
+  void add_second_order(const StageWeights& of, double h, const Rows& begin, std::span<const int> which, Rows& y) const;
 
   const Plan& plan_;
   std::vector<DesignMechanism*> groups_;
   MechanismTangents mechanism_;
   std::vector<AdjointMechanism::Reached> reached_;  // by group
   std::size_t n_, width_;
-  std::vector<Rows> slopes_;  // by stage
-  Rows stage_, loads_, rows_, lambda_;
+  std::vector<int> all_, no_unknowns_;  // coordinates: all, and those that are none
+  std::vector<Rows> accelerations_;     // by stage
+  std::vector<Rows> velocities_;        // by stage, for the interpolant
+  Rows stage_, rows_;
   std::vector<double> masses_;
-  std::vector<Lanes> f_, b_, x_, mu_;
-  SchurLanes scratch_;
+  SchurRows scratch_;
 };
 
 }  // namespace catena

@@ -70,12 +70,15 @@ void StateDerivatives::leave_out_parameter(Group& group, std::size_t p, int row)
 }
 
 void StateDerivatives::lift_state(Group& group, const Snapshot& snapshot) {
-  evaluator_.go_to_curve_places(snapshot.evaluator.curve_places());
-  group.mechanism.go_to_curve_places(snapshot.evaluator.curve_places());
+  if (plan().contacts > 0) {
+    const std::vector<CurvePlace> places = snapshot.evaluator.curve_places();
+    evaluator_.go_to_curve_places(places);
+    group.mechanism.go_to_curve_places(places);
+  }
   group.mechanism.lift_configuration(snapshot.q, group.q);
-  lift(snapshot.qd, group.qd);
-  lift(snapshot.qdd, group.qdd);
-  lift(snapshot.lambda, group.lambda);
+  if (!snapshot.qd.empty()) lift(snapshot.qd, group.qd);
+  if (!snapshot.qdd.empty()) lift(snapshot.qdd, group.qdd);
+  if (!snapshot.lambda.empty()) lift(snapshot.lambda, group.lambda);
 }
 
 void StateDerivatives::differentiate(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out,

@@ -118,7 +118,7 @@ class StateDerivatives {
   std::span<const double> jacobian();
   /// Values without derivatives.
   static void lift(std::span<const double> values, std::vector<DesignScalar>& out);
-  /// Lifts q (with what is given of coordinates that are no unknowns), qd and qdd of the snapshot.
+  /// Lifts q (with what is given of coordinates that are no unknowns), and what the snapshot has of qd, qdd and lambda.
   void lift_state(Group& group, const Snapshot& snapshot);
   /// Scratch over coordinates and rows, for right-hand sides and solutions.
   std::span<double> loads_scratch() { return f_; }

@@ -5,6 +5,7 @@
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/kernels/lanes.hpp"
+#include "catena/linalg/kernels/packs.hpp"
 
 namespace catena {
 namespace {
@@ -17,41 +18,92 @@ void add_row(double factor, const double* along, std::size_t width, double* out)
 
 }  // namespace
 
+MechanismTangents::MechanismTangents(const Evaluator& evaluator) : AdjointMechanism(evaluator) {
+  std::vector<char> reads(at(3 * plan_->bodies), 0);
+  const auto note = [&](const auto& block, bool angle_alone) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    for (int e = 0; e < block.size(); ++e) {
+      for (int b = 0; b < E::bodies; ++b) {
+        const int body = b == 0 ? block.body_i[at(e)] : block.body_j[at(e)];
+        for (int k = angle_alone ? 2 : 0; k < 3 && body < plan_->moving; ++k) reads[at(3 * body + k)] = 1;
+      }
+    }
+  };
+  for_each_list(plan_->blocks, [&](const auto& block, int) {
+    note(block, std::is_same_v<typename std::remove_cvref_t<decltype(block)>::Element, Revolute<double>>);
+  });
+  for_each_list(plan_->forces, [&](const auto& block, int) {
+    note(block, false);
+    any_force_ = any_force_ || block.size() > 0;
+  });
+  for (std::size_t c = 0; c < reads.size(); ++c) {
+    if (reads[c]) read_.push_back(static_cast<int>(c));
+  }
+}
+
+struct MechanismTangents::PinKernel {
+  std::span<const PinWeights> ends;
+  Directions along;
+  double *rows, *loads;  // nullptr where they are not wanted
+
+  template <class P>
+  void run(std::size_t first) const {
+    const std::size_t w = along.width;
+    const double *const dq = along.dq.data() + first, *const dqd = along.dqd.data() + first;
+    for (const PinWeights& end : ends) {
+      P turn, rate, sum;
+      packs::load(turn, dq + end.angle * w);
+      packs::load(rate, dqd + end.angle * w);
+      if (loads) packs::add(loads + end.angle * w + first, end.load, turn);
+      if (!rows) continue;
+      double* const x = rows + end.row * w + first;
+      packs::load(sum, x);
+      sum += end.turn.x * turn + end.rate.x * rate;
+      packs::store(sum, x);
+      packs::load(sum, x + w);
+      sum += end.turn.y * turn + end.rate.y * rate;
+      packs::store(sum, x + w);
+    }
+  }
+};
+
 // With the arm a = A s: Phi by the angle is R a, (R a)' = -a omega, (R a)'' = -a alpha - R a omega^2, and the curvature
 // -a. Translations have constant columns.
 template <class Block, class List>
 void MechanismTangents::add_pins(const Block& block, const List& list, std::span<const double> lambda,
-                                 const Directions& along, const TangentSums& sums) const {
-  const std::size_t w = along.width;
+                                 const Directions& along, std::span<double> rows, std::span<double> loads, bool rates) {
+  pin_weights_.resize(2 * at(block.size()));
+  std::size_t ends = 0;
   for (int e = 0; e < block.size(); ++e) {
     const auto& pin = list[at(block.entry[at(e)])].element;
     const std::size_t row = at(block.row(e));
+    const Vec2<double> multipliers = loads.empty() ? Vec2<double>{} : Vec2<double>{lambda[row], lambda[row + 1]};
     for (int b = 0; b < 2; ++b) {
       const int body = b == 0 ? block.body_i[at(e)] : block.body_j[at(e)];
       if (body >= plan_->moving) continue;
       const Frame<Taylor<double>>& f = motion_[at(body)];
       const Vec2<double>& s = b == 0 ? pin.s_i : pin.s_j;
-      const double sign = b == 0 ? -1 : 1, omega = f.phi.d, alpha = f.phi.dd;
+      const double sign = b == 0 ? -1 : 1, omega = f.phi.d, alpha = f.phi.dd, square = omega * omega;
       const Vec2<double> a{sign * (f.c.f * s.x - f.s.f * s.y), sign * (f.s.f * s.x + f.c.f * s.y)};
-      const std::size_t c = at(3 * body + 2);
-      const double *dphi = along.dq.data() + c * w, *domega = along.dqd.data() + c * w;
-      if (!sums.bends.empty()) {
-        double *x = sums.bends.data() + row * w, *y = x + w;
-        const double by_x = -a.x * alpha + a.y * omega * omega, by_y = -a.y * alpha - a.x * omega * omega;
-        const double rate_x = -2 * a.x * omega, rate_y = -2 * a.y * omega;
-        for (std::size_t p = 0; p < w; p += Lanes::count) {
-          const Lanes turn = Lanes::load(dphi + p), rate = Lanes::load(domega + p);
-          (Lanes::load(x + p) + (by_x * turn + rate_x * rate)).store(x + p);
-          (Lanes::load(y + p) + (by_y * turn + rate_y * rate)).store(y + p);
-        }
-      }
-      if (!sums.rates.empty()) {
-        add_row(-a.x * omega, dphi, w, sums.rates.data() + row * w);
-        add_row(-a.y * omega, dphi, w, sums.rates.data() + (row + 1) * w);
-      }
-      if (!sums.loads.empty()) add_row(lambda[row] * a.x + lambda[row + 1] * a.y, dphi, w, sums.loads.data() + c * w);
+      PinWeights& end = pin_weights_[ends++];
+      end.row = row;
+      end.angle = at(3 * body + 2);
+      end.load = dot(multipliers, a);
+      end.turn = rates ? Vec2<double>{-a.x * omega, -a.y * omega}
+                       : Vec2<double>{a.y * square - a.x * alpha, -a.y * alpha - a.x * square};
+      end.rate = rates ? Vec2<double>{} : Vec2<double>{-2 * a.x * omega, -2 * a.y * omega};
     }
   }
+  const auto target = [](std::span<double> all) { return all.empty() ? nullptr : all.data(); };
+  const auto all = std::span<const PinWeights>(pin_weights_).first(ends);
+  packs::with_packs(PinKernel{all, along, target(rows), target(loads)}, along.width);
+}
+
+template <class Block, class List>
+void MechanismTangents::add_pins(const Block& block, const List& list, std::span<const double> lambda,
+                                 const Directions& along, const TangentSums& sums) {
+  if (!sums.bends.empty() || !sums.loads.empty()) add_pins(block, list, lambda, along, sums.bends, sums.loads, false);
+  if (!sums.rates.empty()) add_pins(block, list, lambda, along, sums.rates, {}, true);
 }
 
 template <class Block, class List>
@@ -148,7 +200,7 @@ void MechanismTangents::add_forces(const Evaluator& evaluator, const Block& bloc
 
 void MechanismTangents::add_along(const Evaluator& evaluator, std::span<const double> lambda,
                                   std::span<const double> dq, std::span<const double> dqd, std::size_t width,
-                                  const TangentSums& sums) const {
+                                  const TangentSums& sums) {
   const Directions along{dq, dqd, width};
   detail::visit_constraints(*plan_, *model_, [&](const auto& block, const auto& list) {
     using E = ElementOf<decltype(list)>;
@@ -157,7 +209,7 @@ void MechanismTangents::add_along(const Evaluator& evaluator, std::span<const do
     else if constexpr (detail::is_differentiated<E>)
       add_constraints(block, list, lambda, along, sums);
   });
-  if (sums.loads.empty()) return;
+  if (sums.loads.empty() || !any_force_) return;
   for_each_list(plan_->forces, model_->forces, [&](const auto& block, const auto& list, int) {
     if constexpr (detail::is_differentiated<ElementOf<decltype(list)>>)
       add_forces(evaluator, block, list, along, sums.loads);

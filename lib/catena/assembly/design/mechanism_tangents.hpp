@@ -25,11 +25,13 @@ struct TangentSums {
 
 class MechanismTangents : public AdjointMechanism {
  public:
-  using AdjointMechanism::AdjointMechanism;
+  explicit MechanismTangents(const Evaluator& evaluator);
 
+  /// The coordinates whose rows of dq and dqd add_along() reads, ascending: of pins the angles alone.
+  const std::vector<int>& read_coordinates() const { return read_; }
   /// Along directions, at the motion that was set. `lambda` of the solver's rows; without `sums.loads` it may be empty.
   void add_along(const Evaluator& evaluator, std::span<const double> lambda, std::span<const double> dq,
-                 std::span<const double> dqd, std::size_t width, const TangentSums& sums) const;
+                 std::span<const double> dqd, std::size_t width, const TangentSums& sums);
   /// By the parameters of a group, which are the directions from number `first` on; `mechanism` is set to the time, and
   /// the side of it, where reached.asks_mechanism().
   void add_parameters(const DesignMechanism& mechanism, const Reached& reached, std::span<const double> lambda,
@@ -47,15 +49,31 @@ class MechanismTangents : public AdjointMechanism {
                             std::size_t width, std::span<double> loads) const;
   void add_pin_parameters(const Reached& reached, std::span<const double> lambda, std::size_t first, std::size_t width,
                           const TangentSums& sums) const;
+  /// A body's end of a pin: what its turning and the rate of it weigh in the pin's rows and in the body's own moment.
+  struct PinWeights {
+    std::size_t row, angle;
+    Vec2<double> turn, rate;
+    double load;
+  };
+  struct PinKernel;
+  struct PinParametersKernel;
   template <class Block, class List>
   void add_pins(const Block& block, const List& list, std::span<const double> lambda, const Directions& along,
-                const TangentSums& sums) const;
+                const TangentSums& sums);
+  /// The same to (Phi_q)'' and the loads, or, with `rates`, to (Phi_q)' alone; empty spans as in TangentSums.
+  template <class Block, class List>
+  void add_pins(const Block& block, const List& list, std::span<const double> lambda, const Directions& along,
+                std::span<double> rows, std::span<double> loads, bool rates);
   template <class Block, class List>
   void add_constraints(const Block& block, const List& list, std::span<const double> lambda, const Directions& along,
                        const TangentSums& sums) const;
   template <class Block, class List>
   void add_forces(const Evaluator& evaluator, const Block& block, const List& list, const Directions& along,
                   std::span<double> loads) const;
+
+  std::vector<int> read_;
+  bool any_force_ = false;
+  std::vector<PinWeights> pin_weights_;
 };
 
 }  // namespace catena

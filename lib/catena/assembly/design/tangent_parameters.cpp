@@ -3,6 +3,7 @@
 #include "catena/assembly/design/mechanism_tangents.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/kernels/lanes.hpp"
+#include "catena/linalg/kernels/packs.hpp"
 
 namespace catena {
 namespace {
@@ -16,34 +17,57 @@ void add_derivatives(double factor, const DesignScalar& x, double* out) {
 
 }  // namespace
 
+struct MechanismTangents::PinParametersKernel {
+  const MechanismTangents& tangents;
+  const Reached& reached;
+  std::span<const double> lambda;
+  std::size_t width;
+  double *phi, *rates, *bends, *loads;  // at the group's first direction; nullptr where they are not wanted
+
+  template <class P>
+  static void add(double* out, double by_x, const P& x, double by_y, const P& y) {
+    P sum;
+    packs::load(sum, out);
+    sum += by_x * x + by_y * y;
+    packs::store(sum, out);
+  }
+  template <class P>
+  void run(std::size_t lane) const {
+    for (const Reached::PinEnd& end : reached.pins_) {
+      const Frame<Series>& f = tangents.motion_[at(end.body)];
+      const double omega = f.phi.d, alpha = f.phi.dd, square = omega * omega;
+      P s_x, s_y;
+      packs::load(s_x, end.x.data() + lane);
+      packs::load(s_y, end.y.data() + lane);
+      const P x = f.c.f * s_x - f.s.f * s_y, y = f.s.f * s_x + f.c.f * s_y;
+      const std::size_t row = at(end.row) * width + lane;
+      if (phi) {
+        packs::add(phi + row, 1, x);
+        packs::add(phi + row + width, 1, y);
+      }
+      if (rates) {
+        packs::add(rates + row, -omega, y);
+        packs::add(rates + row + width, omega, x);
+      }
+      if (bends) {
+        add(bends + row, -square, x, -alpha, y);
+        add(bends + row + width, alpha, x, -square, y);
+      }
+      if (loads && end.body < tangents.plan_->moving)
+        add(loads + at(3 * end.body + 2) * width + lane, -lambda[at(end.row + 1)], x, lambda[at(end.row)], y);
+    }
+  }
+};
+
 // With the arm a = A s and its derivative A s_p: h_p = A s_p, h'_p = R A s_p omega, h''_p = R A s_p alpha - A s_p
 // omega^2, and of the load's moment lambda . R A s_p.
 void MechanismTangents::add_pin_parameters(const Reached& reached, std::span<const double> lambda, std::size_t first,
                                            std::size_t width, const TangentSums& sums) const {
-  const auto add = [&](std::span<double> all, int row, double by_x, const Lanes& x, double by_y, const Lanes& y) {
-    double* const out = all.data() + at(row) * width + first;
-    (Lanes::load(out) + by_x * x + by_y * y).store(out);
-  };
-  for (const Reached::PinEnd& end : reached.pins_) {
-    const Frame<Series>& f = motion_[at(end.body)];
-    const double omega = f.phi.d, alpha = f.phi.dd, square = omega * omega;
-    const Lanes s_x = Lanes::load(end.x.data()), s_y = Lanes::load(end.y.data());
-    const Lanes x = f.c.f * s_x - f.s.f * s_y, y = f.s.f * s_x + f.c.f * s_y;
-    if (!sums.phi.empty()) {
-      add(sums.phi, end.row, 1, x, 0, y);
-      add(sums.phi, end.row + 1, 0, x, 1, y);
-    }
-    if (!sums.rates.empty()) {
-      add(sums.rates, end.row, 0, x, -omega, y);
-      add(sums.rates, end.row + 1, omega, x, 0, y);
-    }
-    if (!sums.bends.empty()) {
-      add(sums.bends, end.row, -square, x, -alpha, y);
-      add(sums.bends, end.row + 1, alpha, x, -square, y);
-    }
-    if (!sums.loads.empty() && end.body < plan_->moving)
-      add(sums.loads, 3 * end.body + 2, -lambda[at(end.row + 1)], x, lambda[at(end.row)], y);
-  }
+  if (reached.pins_.empty()) return;
+  const auto target = [&](std::span<double> all) { return all.empty() ? nullptr : all.data() + first; };
+  packs::with_packs(PinParametersKernel{*this, reached, lambda, width, target(sums.phi), target(sums.rates),
+                                        target(sums.bends), target(sums.loads)},
+                    parameters_at_once);
 }
 
 void MechanismTangents::add_constraint_parameters(const DesignMechanism& mechanism, const Reached& reached,
@@ -134,7 +158,7 @@ void MechanismTangents::add_parameters(const DesignMechanism& mechanism, const R
     for (const Reached::Mass& mass : reached.masses_) {
       const double pull = mass.pull - (qdd.empty() ? 0 : qdd[at(mass.coordinate)]);
       double* const out = load(mass.coordinate);
-      for (std::size_t p = 0; p < mass.by.size(); ++p) out[p] += pull * mass.by[p];
+      (Lanes::load(out) + pull * Lanes::load(mass.by.data())).store(out);
     }
   }
   if (!reached.asks_mechanism()) return;

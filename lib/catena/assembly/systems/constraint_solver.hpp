@@ -50,9 +50,17 @@ template <class V>
 struct SchurScratch {
   std::vector<V> right_hand_side, correction, change;  // over rows, rows, coordinates
 };
+/// Of one right-hand side of several, where each is solved for by itself.
+struct SchurAlone {
+  std::vector<double> Q, gamma, qdd, lambda;
+};
 struct SchurLanes : SchurScratch<Lanes> {
   std::vector<Lanes> work;
-  std::vector<double> own_Q, own_gamma, own_qdd, own_lambda;  // of one lane, where each is solved for by itself
+  SchurAlone own;
+};
+struct SchurRows {
+  std::vector<double> work;
+  SchurAlone own;
 };
 
 class ConstraintSolver {
@@ -88,6 +96,10 @@ class ConstraintSolver {
   /// The same for four right-hand sides at once, rounded as one by one.
   void solve_motion(std::span<const Lanes> Q, std::span<const Lanes> gamma, std::span<Lanes> qdd,
                     std::span<Lanes> lambda, SchurLanes& scratch, Counters& counters);
+  /// The same for `width` of them, a multiple of four, in rows (linalg/kernels/packs.hpp): x holds Q and then qdd, over
+  /// coordinates, `rows` -gamma and then lambda. What is no unknown is overwritten.
+  void solve_motion_rows(std::span<double> x, std::span<double> rows, std::size_t width, SchurRows& scratch,
+                         Counters& counters);
   /// Part of M qdd - Q + Phi_q^T lambda that the last solve_motion() left at massless coordinates, relative to the
   /// forces in it; 0 without such coordinates. Near 1: nothing that has mass determines their motion.
   double massless_residual() const { return massless_residual_; }
@@ -157,6 +169,12 @@ class ConstraintSolver {
   template <class V, class S>
   void solve_with_masses(std::span<const V> Q, std::span<const V> gamma, std::span<V> qdd, std::span<V> lambda,
                          S& scratch, Counters& counters);
+  /// Whether a solution is refined as often as it needs, which each tells by itself.
+  bool refines_each() const;
+  void solve_each_of(std::span<double> x, std::span<double> rows, std::size_t width, SchurAlone& own,
+                     Counters& counters);
+  struct EliminationKernel;
+  struct SpreadKernel;
   double find_massless_residual(std::span<const double> Q, std::span<const double> lambda);
   void refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                      std::span<double> lambda, Counters& counters);

@@ -5,6 +5,7 @@
 #include "catena/assembly/systems/constraint_solver.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/factorization/refinement.hpp"
+#include "catena/linalg/kernels/packs.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
@@ -17,10 +18,6 @@ double largest(std::span<const double> numbers) {
   double most = 0;
   for (double number : numbers) most = std::max(most, std::abs(number));
   return most;
-}
-
-bool refines(const std::vector<double>& room, bool always, double pivot_ratio) {
-  return !room.empty() && (always || pivot_ratio < dependence::refined_if_light);
 }
 
 }  // namespace
@@ -139,38 +136,111 @@ template void ConstraintSolver::solve_with_masses<double, SchurScratch<double>>(
                                                                                 std::span<double>, std::span<double>,
                                                                                 SchurScratch<double>&, Counters&);
 
+bool ConstraintSolver::refines_each() const {
+  return !rest_.Q.empty() && (!masses_.massless.empty() || unequal_ || smallest_ratio_ < dependence::refined_if_light);
+}
+
 void ConstraintSolver::solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                                     std::span<double> lambda, Counters& counters) {
   solve_with_masses(Q, gamma, qdd, lambda, scratch_, counters);
-  if (refines(rest_.Q, !masses_.massless.empty() || unequal_, smallest_ratio_))
-    refine_motion(Q, gamma, qdd, lambda, counters);
+  if (refines_each()) refine_motion(Q, gamma, qdd, lambda, counters);
 }
 
 void ConstraintSolver::solve_motion(std::span<const Lanes> Q, std::span<const Lanes> gamma, std::span<Lanes> qdd,
                                     std::span<Lanes> lambda, SchurLanes& scratch, Counters& counters) {
-  if (!refines(rest_.Q, !masses_.massless.empty() || unequal_, smallest_ratio_)) {
+  if (!refines_each()) {
     scratch.right_hand_side.resize(scratch_.right_hand_side.size());
     scratch.correction.resize(scratch_.correction.size());
     scratch.change.resize(scratch_.change.size());
     return solve_with_masses(Q, gamma, qdd, lambda, scratch, counters);
   }
-  // How often a solution is refined depends on it: one after the other.
-  scratch.own_Q.resize(Q.size());
-  scratch.own_gamma.resize(gamma.size());
-  scratch.own_qdd.resize(qdd.size());
-  scratch.own_lambda.resize(lambda.size());
-  const auto take = [](std::span<const Lanes> all, int lane, std::vector<double>& own) {
-    for (std::size_t k = 0; k < own.size(); ++k) own[k] = all[k][lane];
+  SchurAlone& own = scratch.own;
+  own.Q.resize(Q.size());
+  own.gamma.resize(gamma.size());
+  own.qdd.resize(qdd.size());
+  own.lambda.resize(lambda.size());
+  const auto take = [](std::span<const Lanes> all, int lane, std::vector<double>& one) {
+    for (std::size_t k = 0; k < one.size(); ++k) one[k] = all[k][lane];
   };
-  const auto give = [](const std::vector<double>& own, int lane, std::span<Lanes> all) {
-    for (std::size_t k = 0; k < own.size(); ++k) all[k].set(lane, own[k]);
+  const auto give = [](const std::vector<double>& one, int lane, std::span<Lanes> all) {
+    for (std::size_t k = 0; k < one.size(); ++k) all[k].set(lane, one[k]);
   };
   for (int lane = 0; lane < Lanes::count; ++lane) {
-    take(Q, lane, scratch.own_Q);
-    take(gamma, lane, scratch.own_gamma);
-    solve_motion(scratch.own_Q, scratch.own_gamma, scratch.own_qdd, scratch.own_lambda, counters);
-    give(scratch.own_qdd, lane, qdd);
-    give(scratch.own_lambda, lane, lambda);
+    take(Q, lane, own.Q);
+    take(gamma, lane, own.gamma);
+    solve_motion(own.Q, own.gamma, own.qdd, own.lambda, counters);
+    give(own.qdd, lane, qdd);
+    give(own.lambda, lane, lambda);
+  }
+}
+
+/// x = M^-1 Q, and what it leaves of the equations: rows = Phi_q M^-1 Q - gamma.
+struct ConstraintSolver::EliminationKernel {
+  const ConstraintSolver& solver;
+  double *x, *rows;
+  std::size_t width;
+
+  template <class P>
+  void run(std::size_t first) const {
+    const int *const start = solver.column_start_.data(), *const row = solver.plan_->jacobian.row_index.data();
+    const double *const inverse = solver.masses_.inverse.data(), *const jacobian = solver.jacobian_;
+    const std::size_t coordinates = solver.masses_.inverse.size();
+    for (std::size_t c = 0; c < coordinates; ++c) {
+      P value;
+      packs::load(value, x + c * width + first);
+      value *= inverse[c];
+      packs::store(value, x + c * width + first);
+      for (int k = start[c]; k < start[c + 1]; ++k)
+        packs::add(rows + static_cast<std::size_t>(row[k]) * width + first, jacobian[k], value);
+    }
+  }
+};
+
+/// x -= M^-1 Phi_q^T lambda.
+struct ConstraintSolver::SpreadKernel {
+  const ConstraintSolver& solver;
+  double* x;
+  const double* lambda;
+  std::size_t width;
+
+  template <class P>
+  void run(std::size_t first) const {
+    const int *const start = solver.column_start_.data(), *const row = solver.plan_->jacobian.row_index.data();
+    const double *const inverse = solver.masses_.inverse.data(), *const jacobian = solver.jacobian_;
+    const std::size_t coordinates = solver.masses_.inverse.size();
+    for (std::size_t c = 0; c < coordinates; ++c) {
+      P sum{}, multiplier;
+      for (int k = start[c]; k < start[c + 1]; ++k) {
+        packs::load(multiplier, lambda + static_cast<std::size_t>(row[k]) * width + first);
+        sum += jacobian[k] * multiplier;
+      }
+      packs::add(x + c * width + first, -inverse[c], sum);
+    }
+  }
+};
+
+void ConstraintSolver::solve_motion_rows(std::span<double> x, std::span<double> rows, std::size_t width,
+                                         SchurRows& scratch, Counters& counters) {
+  if (refines_each() || smallest_ratio_ < dependence::refined)
+    return solve_each_of(x, rows, width, scratch.own, counters);
+  packs::with_packs(EliminationKernel{*this, x.data(), rows.data(), width}, width);
+  if (plan_->rows == 0) return;
+  factors_.solve_rows(rows.data(), width, scratch.work, counters);
+  packs::with_packs(SpreadKernel{*this, x.data(), rows.data(), width}, width);
+}
+
+void ConstraintSolver::solve_each_of(std::span<double> x, std::span<double> rows, std::size_t width, SchurAlone& own,
+                                     Counters& counters) {
+  own.Q.resize(masses_.inverse.size());
+  own.qdd.resize(masses_.inverse.size());
+  own.gamma.resize(rows.size() / width);
+  own.lambda.resize(rows.size() / width);
+  for (std::size_t p = 0; p < width; ++p) {
+    for (std::size_t c = 0; c < own.Q.size(); ++c) own.Q[c] = x[c * width + p];
+    for (std::size_t k = 0; k < own.gamma.size(); ++k) own.gamma[k] = -rows[k * width + p];
+    solve_motion(own.Q, own.gamma, own.qdd, own.lambda, counters);
+    for (std::size_t c = 0; c < own.Q.size(); ++c) x[c * width + p] = own.qdd[c];
+    for (std::size_t k = 0; k < own.gamma.size(); ++k) rows[k * width + p] = own.lambda[k];
   }
 }
 

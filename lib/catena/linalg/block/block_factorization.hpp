@@ -47,6 +47,8 @@ class BlockFactorization {
   void solve(std::span<double> x, Counters& counters);
   /// The same for four right-hand sides at once, rounded as one by one. `work` is given its size.
   void solve(std::span<Lanes> x, std::vector<Lanes>& work, Counters& counters);
+  /// The same for `width` of them, a multiple of four: row r of x begins at r x width (linalg/kernels/packs.hpp).
+  void solve_rows(double* x, std::size_t width, std::vector<double>& work, Counters& counters);
 
   int size() const { return structure_.size(); }
   bool is_analyzed() const { return structure_.count() >= 0; }
@@ -81,6 +83,10 @@ class BlockFactorization {
   void place_updates();
   template <class V>
   void solve_in(std::span<V> x, std::vector<V>& work);
+  /// y in the order of elimination.
+  template <class V>
+  void solve_in_order(V* y) const;
+  struct RowsKernel;
   void eliminate_large(const Step& step, double* panel, const Segment* segments, int* done);
 
   BlockStructure structure_;

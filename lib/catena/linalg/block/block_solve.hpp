@@ -11,14 +11,10 @@
 namespace catena {
 
 template <class V>
-void BlockFactorization::solve_in(std::span<V> x, std::vector<V>& work) {
-  if (!factorized_) throw std::logic_error("BlockFactorization: no valid factors to solve with");
+void BlockFactorization::solve_in_order(V* y) const {
   const auto panel_size = [](const Step& step) {
     return static_cast<std::size_t>(step.columns) * static_cast<std::size_t>(step.columns + step.below);
   };
-  V* const y = work.data();
-  const int* const order = structure_.order.data();
-  for (int k = 0; k < size(); ++k) y[k] = x[order[k]];
   const double* panel = panels_.data();
   const int* rows = structure_.rows.data();
   for (const Step& step : steps_) {
@@ -43,6 +39,15 @@ void BlockFactorization::solve_in(std::span<V> x, std::vector<V>& work) {
     rows -= step->below;
     detail::solve_backward(panel, step->columns + step->below, step->columns, rows, y + step->first, y);
   }
+}
+
+template <class V>
+void BlockFactorization::solve_in(std::span<V> x, std::vector<V>& work) {
+  if (!factorized_) throw std::logic_error("BlockFactorization: no valid factors to solve with");
+  V* const y = work.data();
+  const int* const order = structure_.order.data();
+  for (int k = 0; k < size(); ++k) y[k] = x[order[k]];
+  solve_in_order(y);
   for (int k = 0; k < size(); ++k) x[order[k]] = y[k];
 }
 

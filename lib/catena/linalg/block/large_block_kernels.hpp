@@ -120,14 +120,14 @@ inline void solve_forward(const double* panel, int height, int columns, const in
           value[k] -= l[static_cast<std::size_t>(j) * static_cast<std::size_t>(height) + first + k] * value[j];
         own[first + k] = value[k];
       }
-      const auto sum_of_row = [&](int i) {
+      const auto subtract_row = [&](int i, V& from) {
         V sum{};
         for (int k = 0; k < c; ++k)
           sum += l[static_cast<std::size_t>(k) * static_cast<std::size_t>(height) + i] * value[k];
-        return sum;
+        from -= sum;
       };
-      for (int i = first + c; i < columns; ++i) own[i] -= sum_of_row(i);
-      for (int i = columns; i < height; ++i) y[rows[i - columns]] -= sum_of_row(i);
+      for (int i = first + c; i < columns; ++i) subtract_row(i, own[i]);
+      for (int i = columns; i < height; ++i) subtract_row(i, y[rows[i - columns]]);
       return int{c};
     });
   }
