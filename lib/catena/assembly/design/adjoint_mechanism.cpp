@@ -126,6 +126,9 @@ void AdjointMechanism::add_constraints_by_q(const AdjointWeights& weights, std::
       constexpr int columns = 3 * E::bodies;
       using D = Dual<Series, columns>;
       for (int e = 0; e < block.size(); ++e) {
+        if (!detail::rows_weigh(weights.bend, block.row(e), E::rows) &&
+            !detail::rows_weigh(weights.rate, block.row(e), E::rows))
+          continue;
         const auto& entry = list[at(block.entry[at(e)])];
         const auto f = detail::design_frames<Series>(block, e, plan_->moving, origin_,
                                                      [&](int body) { return motion_[at(body)]; });
@@ -229,6 +232,7 @@ void AdjointMechanism::add_curvature(const AdjointWeights& weights, std::span<do
             {f.x.f, {w[0]}}, {f.y.f, {w[1]}}, {f.phi.f, {w[2]}}, {f.c.f, {-f.s.f * w[2]}}, {f.s.f, {f.c.f * w[2]}}};
       };
       for (int e = 0; e < block.size(); ++e) {
+        if (!detail::rows_weigh(weights.lambda, block.row(e), E::rows)) continue;
         const auto& entry = list[at(block.entry[at(e)])];
         const auto f = detail::design_frames<Along>(block, e, plan_->moving, origin_, frame);
         const Frame<D> i = seed<Along, columns>(f.i, 0);

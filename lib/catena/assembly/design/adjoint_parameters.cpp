@@ -237,21 +237,27 @@ void AdjointMechanism::add_constraints(const DesignMechanism& mechanism, const R
     if (places.empty()) return;
     if constexpr (detail::has_adjoint<Plain> || detail::is_slide<Plain>) {
       for (const int e : places) {
+        const auto weigh = [&](std::span<const double> of) { return detail::rows_weigh(of, block.row(e), E::rows); };
+        const bool weighs = weigh(weights.phi) || weigh(weights.rate) || weigh(weights.bend);
+        const bool pulls = weigh(weights.lambda);
+        if (!weighs && !pulls) continue;
         const auto& entry = list[at(block.entry[at(e)])];
         DesignSeries c;
         if constexpr (E::functions > 0) c = mechanism.element_value(entry.id);
         const double scale = scale_[at(entry.id)];
         DesignSeries rows[E::rows];
-        const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
         const CurvePlace& contact = contact_of(block, contacts_, block.entry[at(e)]);
-        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground, &contact}, rows);
-        for (int r = 0; r < E::rows; ++r) {
+        if (weighs) {
+          const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
+          entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground, &contact}, rows);
+        }
+        for (int r = 0; weighs && r < E::rows; ++r) {
           const std::size_t row = at(block.row(e) + r);
           if (!weights.phi.empty()) sum -= DesignScalar(scale * weights.phi[row]) * rows[r].f;
           if (!weights.rate.empty()) sum -= DesignScalar(scale * weights.rate[row]) * rows[r].d;
           if (!weights.bend.empty()) sum -= DesignScalar(scale * weights.bend[row]) * rows[r].dd;
         }
-        if (weights.lambda.empty()) continue;
+        if (!pulls) continue;
         // lambda^T Phi_q w: without what the function of time itself changes by.
         const auto g = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame_along);
         entry.element.phi(Arguments<DesignSeries>{g.i, g.j, DesignSeries(c.f), g.ground, &contact}, rows);

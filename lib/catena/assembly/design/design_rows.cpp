@@ -1,4 +1,6 @@
 // DesignMechanism: constraints, their loads and what they measure, with derivatives.
+#include <algorithm>
+
 #include "catena/assembly/curve_contacts.hpp"
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/base/at.hpp"
@@ -8,6 +10,13 @@ namespace {
 
 using detail::DesignSeries;
 using detail::value_of_entry;
+
+/// Whether these multipliers of an element, with their derivatives, leave nothing of its equations.
+bool weigh_nothing(std::span<const DesignScalar> lambda) {
+  return std::all_of(lambda.begin(), lambda.end(), [](const DesignScalar& x) {
+    return x.v == 0 && std::all_of(x.d.begin(), x.d.end(), [](double d) { return d == 0; });
+  });
+}
 
 /// Phi_q of an element with derivatives, as published, row-major with six columns.
 template <class E>
@@ -63,6 +72,7 @@ void DesignMechanism::add_constraint_loads(std::span<const DesignScalar> lambda,
   for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
     using E = ElementOf<decltype(list)>;
     for (int e = 0; e < block.size(); ++e) {
+      if (weigh_nothing(lambda.subspan(at(block.row(e)), E::rows))) continue;
       const auto& entry = list[at(block.entry[at(e)])];
       const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
                                                          [&](int body) { return detail::present(motion_[at(body)]); });

@@ -2,6 +2,7 @@
 // For the source files of DesignMechanism.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <type_traits>
@@ -70,6 +71,12 @@ Frame<T> moved_by(Frame<T> f, const Vec2<double>& by) {
   f.x = f.x + T(by.x);
   f.y = f.y + T(by.y);
   return f;
+}
+
+/// Whether these rows, from `row` on, weigh anything: those that are released do not. Empty: none does.
+inline bool rows_weigh(std::span<const double> weights, int row, int rows) {
+  return !weights.empty() &&
+         std::any_of(weights.begin() + row, weights.begin() + row + rows, [](double weight) { return weight != 0; });
 }
 
 /// Calls f(block, list) for all constraints. Where pins are all there is nothing else is looked through: of small

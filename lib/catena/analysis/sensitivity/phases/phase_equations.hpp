@@ -72,7 +72,8 @@ class PhaseEquations {
 
   /// Factors for the equations that hold, at this place.
   bool factorize(double t, Side side, std::span<const DesignScalar> q, const DesignMechanism& masses);
-  /// qdd and lambda with derivatives at q, qd; the mechanism is at the time of the factors, and at this state then.
+  /// qdd and lambda with derivatives at q, qd, where the evaluator is factored; the mechanism is at the time of the
+  /// factors, and at this state then. Values come in plain numbers; without parameters they are all that is found.
   bool accelerate(const Design& design, std::span<const DesignScalar> q, std::span<const DesignScalar> qd,
                   std::span<DesignScalar> qdd, std::span<DesignScalar> lambda);
   /// What contacts do at the state of the last accelerate().
@@ -115,7 +116,11 @@ class PhaseEquations {
   };
   double normal_value(const Design& design, std::size_t k, std::span<const double> lambda,
                       std::span<const double> along, double& slope) const;
-  bool respond(const Design& design, std::span<const Coupled> coupled);
+  std::vector<Coupled> find_known(const Design& design, std::span<const DesignScalar> q,
+                                  std::span<const DesignScalar> qd, std::span<DesignScalar> lambda) const;
+  void find_sides(std::span<const DesignScalar> qd, std::span<const DesignScalar> lambda);
+  void add_loads(std::span<const double> lambda, std::span<double> f);
+  bool respond(std::span<const Coupled> coupled);
   bool solve_values(const Design& design, std::span<const Coupled> coupled);
   void add_slopes(const Design& design, std::span<const Coupled> coupled, std::span<DesignScalar> x,
                   std::span<DesignScalar> lambda);
@@ -127,11 +132,11 @@ class PhaseEquations {
   std::vector<char> held_;                            // by row
   std::map<std::vector<int>, SaddleSystem> systems_;  // by the rows that are left out
   SaddleSystem* system_ = nullptr;
-  std::vector<double> jacobian_, values_, f_, b_;
+  std::vector<double> jacobian_, values_, columns_, f_, b_;
   std::vector<double> sizes_, slope_;  // of friction forces; d(f + mu sigma N)/df, row by row
   std::vector<Response> response_;
   std::vector<Taylor<DesignScalar>> rows_;
-  DesignVector loads_, forces_, unit_, impulse_;
+  DesignVector loads_, impulse_;
 };
 
 }  // namespace catena
