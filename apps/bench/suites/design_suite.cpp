@@ -11,6 +11,7 @@
 #include <memory>
 #include <numbers>
 
+#include "cases/contact_gradients.hpp"
 #include "cases/gradient_costs.hpp"
 #include "catena/analysis/batch/batch.hpp"
 #include "catena/elements/all.hpp"
@@ -350,6 +351,7 @@ void design_suite(Bench& bench) {
   oscillations(bench);
   path_generation(bench);
   lanes(bench);
+  contact_gradients(bench);
   gradient_costs(bench);
 }
 
