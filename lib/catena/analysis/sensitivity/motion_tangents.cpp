@@ -19,9 +19,10 @@ MotionTangents::MotionTangents(const Evaluator& evaluator, std::vector<DesignMec
   stage_.resize(2 * n_ * width_);
   rows_.resize(at(plan_.rows) * width_);
   masses_.assign(n_, 0.0);
-  for (int c = 0; c < 3 * plan_.moving; ++c) {
-    all_.push_back(c);
-    if (plan_.column[at(c)] >= 0)
+  for (int c = 0; c < plan_.coordinates(); ++c) {
+    const bool moves = c < 3 * plan_.moving, is_unknown = moves && plan_.column[at(c)] >= 0;
+    if (moves) all_.push_back(c);
+    if (is_unknown)
       masses_[at(c)] = groups_.front()->mass(c).v;
     else
       no_unknowns_.push_back(c);
@@ -36,6 +37,7 @@ void MotionTangents::add_parameters(double t, Side side, std::span<const double>
   }
 }
 
+// Loads on bodies that do not move are left aside.
 void MotionTangents::solve(EquationsOfMotion& equations, std::span<double> x) {
   equations.solve_motion_rows(x, rows_, width_, scratch_);
   for (const int c : no_unknowns_) std::fill_n(x.begin() + static_cast<std::ptrdiff_t>(at(c) * width_), width_, 0.0);

@@ -71,7 +71,7 @@ class MotionTangents {
   MechanismTangents mechanism_;
   std::vector<AdjointMechanism::Reached> reached_;  // by group
   std::size_t n_, width_;
-  std::vector<int> all_, no_unknowns_;  // coordinates: all, and those that are none
+  std::vector<int> all_, no_unknowns_;  // coordinates of bodies that move, and of all those that are no unknowns
   std::vector<Rows> accelerations_;     // by stage
   std::vector<Rows> velocities_;        // by stage, for the interpolant
   Rows stage_, rows_;
