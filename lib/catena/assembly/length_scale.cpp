@@ -7,10 +7,14 @@
 #include "catena/assembly/equations.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/given_frames.hpp"
 #include "catena/model/model_part.hpp"
 
 namespace catena {
 namespace {
+
+// Configurations are given to some seven digits: a gap below this part of what it is a difference of is closed.
+constexpr double given_rounding = 1e-6;
 
 double extent(const Model& model) {
   if (model.bodies.empty()) return 0;
@@ -68,6 +72,64 @@ double mean_curve_size(const Model& model) {
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
+// A dimension of an element that one of its fields gives; 0 where it gives another thing.
+template <class E, class Field>
+double dimension(const E& element, const Field& field) {
+  if constexpr (requires { field.unit, field.unless; }) {
+    if (field.unit == UnitKind::length) return element.*field.member;
+  }
+  return 0;
+}
+
+// The gap of an element as it is given; 0 where it is closed, an angle, or told by no pair of points.
+template <class E>
+double given_gap(const Model& model, const ElementEntry<E, double>& entry) {
+  const auto [i, j] = given_frames<E>(model, entry.i, entry.j);
+  double gap = 0, from = 0;
+  if constexpr (SearchesCurve<E>) {
+    const CurvePlace place = entry.element.place();
+    const Vec2<double> point = i.to_local(j.point(entry.element.s_j) - i.origin());
+    gap = entry.element.measure(i, j, place);
+    from = norm(point - entry.element.curve.plain(0).p);
+  } else if constexpr (requires { entry.element.value(i, j); }) {
+    if (entry.element.in_angle()) return 0;
+    gap = entry.element.measure(i, j);
+    from = std::abs(entry.element.value(i, j));
+  }
+  return std::abs(gap) > given_rounding * from ? std::abs(gap) : 0;
+}
+
+// The largest length of a one-sided element: how far it is open, the points of its bodies from their centroids and of
+// the ground from the other body, its own dimensions; 0 if none.
+double size_of_gaps(const Model& model) {
+  double largest = 0;
+  const auto take = [&](double length) { largest = std::max(largest, length); };
+  for_each_list(model.constraints, [&](const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (OneSided<E>) {
+      for (const auto& entry : list) {
+        if constexpr (!Dry<E>) take(given_gap(model, entry));
+        const int other = entry.i >= 0 ? entry.i : entry.j;
+        visit_points(entry, [&](const Vec2<double>& local, int body) {
+          // Where a curve is fixed in the ground, it has no point there.
+          if (body >= 0) return take(norm(local));
+          if (!SearchesCurve<E> && other >= 0) take(norm(local - model.bodies[at(other)].position));
+        });
+        std::apply([&](const auto&... field) { (take(dimension(entry.element, field)), ...); }, E::fields());
+      }
+    }
+  });
+  return largest;
+}
+
+// Where the weight stops or turns what moves: v^2 / g; 0 where nothing moves, or has weight.
+double way_against_weight(const Model& model) {
+  double fastest = 0;
+  for (const auto& body : model.bodies) fastest = std::max(fastest, squared_norm(body.velocity));
+  const double weight = norm(model.gravity);
+  return weight > 0 ? fastest / weight : 0;
+}
+
 // Radius of gyration of bodies with mass and inertia; 0 if none: where nothing but free bodies moves.
 double mean_gyration(const Model& model) {
   double sum = 0;
@@ -83,7 +145,7 @@ double mean_gyration(const Model& model) {
 }  // namespace
 
 double length_without_joints(const Model& model) {
-  for (const auto length : {extent, mean_force_arm, mean_curve_size, mean_gyration}) {
+  for (const auto length : {extent, mean_force_arm, mean_curve_size, mean_gyration, size_of_gaps, way_against_weight}) {
     if (const double found = length(model); found != 0) return found;
   }
   return 1;

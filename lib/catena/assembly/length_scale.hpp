@@ -1,5 +1,6 @@
 // The length that places, errors and rates of a scene are compared with where no joint tells one: the extent of the
-// given bodies, else the mean arm of forces, the mean size of curves, the mean radius of gyration, else 1. Units: m.
+// given bodies, else the mean arm of forces, the mean size of curves, the mean radius of gyration, the size of
+// one-sided elements, the way v^2 / g in which weight stops what moves, else 1. Units: m.
 #pragma once
 
 #include "catena/model/model.hpp"

@@ -77,6 +77,7 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
   ContactLoads loads(evaluator_, points_, forces);
   if (!find_free_accelerations(t, q, qd, loads))
     return failure(t, loads.trouble().empty() ? "accelerations are not finite" : loads.trouble());
+  sizes_.take(sizes_of_motion(evaluator_.length_scale(), qd, equations_.applied_forces(), equations_.masses().mass));
   forget_shared();
   let_leave(t, states, cause);
   for (std::vector<std::size_t>& group : active_by_group()) {

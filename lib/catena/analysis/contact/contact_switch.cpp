@@ -62,6 +62,7 @@ ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vect
 
 void ContactSwitch::take_over(const ContactSwitch& earlier) {
   know_speed(earlier.speed_);
+  sizes_.take(earlier.sizes_);
   past_.take_over(earlier.past_);
   other_laws_ = earlier.other_laws_;
   several_states_ = earlier.several_states_;

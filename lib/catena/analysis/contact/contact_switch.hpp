@@ -34,6 +34,7 @@
 #include "catena/analysis/contact/motion_phase.hpp"
 #include "catena/analysis/contact/problem/contact_problem.hpp"
 #include "catena/analysis/contact/shared_forces.hpp"
+#include "catena/analysis/events/motion_sizes.hpp"
 #include "catena/analysis/events/strike.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
 #include "catena/analysis/motion/impulses.hpp"
@@ -85,6 +86,8 @@ class ContactSwitch {
   /// Takes note of a speed of the motion, see fastest().
   void know_speed(double speed) { speed_ = std::max(speed_, speed); }
   double speed() const { return speed_; }
+  /// Of the motion so far, where contacts were decided about.
+  const MotionSizes& sizes() const { return sizes_; }
   /// The work of the last strike, J.
   double work_of_strike() const { return work_of_strike_; }
   /// What constraints exerted at the last decision, where it was about a strike or a jolt: collisions that followed at
@@ -198,6 +201,7 @@ class ContactSwitch {
   std::vector<double> p_;  // multipliers of the velocities' jumps, while it decides
   std::vector<ConstraintImpulse> impulses_;
   double speed_ = 0;  // largest of the motion so far, m/s or rad/s times the length scale
+  MotionSizes sizes_;
   Past past_;
   std::optional<SingularPoint> blocked_;
   std::optional<VelocityJump> jump_;

@@ -278,6 +278,7 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
   };
   if (point.kind == ContactKind::grip) return add_grip_transitions(k, dynamics, transitions, needs);
   const ContactLoads& loads = *loads_;
+  const MotionSizes& sizes = switch_->sizes();
   const int element = point.element, slide = point.slide;
   const auto normal = [&loads, k](const Snapshot& s) { return loads.normal_from(k, s.qd, s.lambda); };
   if (point.kind == ContactKind::rigid && !state.closed) {
@@ -292,9 +293,13 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
   }
   if (point.kind == ContactKind::compliant && state.closed) watch(normal, 1, PhaseEnd::pressing);
   if (point.kind == ContactKind::compliant && !state.closed) {
-    watch([element,
-           normal](const Snapshot& s) { return std::min(-s.evaluator.measure(element, {}, {}).value, normal(s)); },
-          -1, PhaseEnd::pressing);
+    const double depth = point.turns ? 1 : sizes.length, force = sizes.force * (point.turns ? sizes.length : 1);
+    watch(
+        [element, normal, depth, force](const Snapshot& s) {
+          const double reached = -s.evaluator.measure(element, {}, {}).value / depth;
+          return force > 0 ? std::min(reached, normal(s) / force) : reached;
+        },
+        -1, PhaseEnd::pressing);
   }
   if (!point.has_friction() || !point.is_exact() || !state.closed) return;
   needs.multipliers = true;
@@ -310,9 +315,29 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
   }
 }
 
+// What rounding of a watched value is measured against. Slips are differences of speeds of the motion, which may be
+// much larger: so may be their rounding.
+double ContactPhases::scale_of(const WatchedPlace& watched) const {
+  const ContactPoint& point = contacts_.points[watched.place];
+  const ContactState& state = states_[watched.place];
+  const MotionSizes& sizes = switch_->sizes();
+  const double length = sizes.length, force = sizes.force * (point.turns ? length : 1);
+  double largest = 0, size = force;
+  if (watched.ends == PhaseEnd::stretch) size = length;
+  if (watched.ends == PhaseEnd::contact && !state.closed) size = point.turns ? 1 : length;
+  // A compliant place that is open, in parts of the sizes; exponents of grips.
+  if ((watched.ends == PhaseEnd::pressing && !state.closed) || (watched.ends == PhaseEnd::slide && state.tied))
+    size = 1;
+  if (watched.ends == PhaseEnd::slide && state.direction != 0) {
+    largest = rate_of_speed(point, switch_->speed(), length);
+    size = rate_of_speed(point, sizes.speed, length);
+  }
+  return std::max(largest, MotionSizes::least_part * size);
+}
+
 void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
   if (loads_) switch_->know_speed(loads_->speed());
-  const double speed = switch_->speed(), length = dynamics.evaluator().length_scale();
+  const double speed = switch_->speed();
   loads_ = std::make_unique<ContactLoads>(dynamics.evaluator(), contacts_.points, states_);
   loads_->know_speed(speed);
   dynamics.attach(loads_.get());
@@ -321,13 +346,8 @@ void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
   Needs needs{.velocity = true};
   for (std::size_t k = 0; k < states_.size(); ++k) add_transitions(k, dynamics, transitions, needs);
   add_shared_transitions(dynamics, transitions, needs);
-  // Slips are differences of speeds of the motion, which may be much larger: so may be their rounding.
-  for (std::size_t n = 0; n < watched_.size(); ++n) {
-    const std::size_t k = watched_[n].place;
-    const bool slides = watched_[n].ends == PhaseEnd::slide && states_[k].direction != 0;
-    if (slides) transitions[n].scale = rate_of_speed(contacts_.points[k], speed, length);
-  }
-  if (ropes_) ropes_->add_transitions(transitions);
+  for (std::size_t n = 0; n < watched_.size(); ++n) transitions[n].scale = scale_of(watched_[n]);
+  if (ropes_) ropes_->add_transitions(transitions, dynamics.evaluator().length_scale());
   watch.watch(std::move(transitions), needs);
 }
 

@@ -80,6 +80,7 @@ class ContactPhases {
   void add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions, Needs& needs);
   void add_grip_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions,
                             Needs& needs);
+  double scale_of(const WatchedPlace& watched) const;
   void lay_grips(const Evaluator& evaluator);
   // Of elastic ropes with grips.
   void start_elastic(const Evaluator& evaluator);

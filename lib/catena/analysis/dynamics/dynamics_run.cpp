@@ -81,6 +81,11 @@ Report Dynamics::start() {
     integrator_.reset();
     return out;
   }
+  if (attached_.events) {
+    const std::span<const double> qd = std::span<const double>(row_.y).subspan(q_.size(), q_.size());
+    attached_.events->know_sizes(
+        sizes_of_motion(evaluator_.length_scale(), qd, equations_.applied_forces(), equations_.masses().mass));
+  }
   look_ahead_at_laws();
   pace_.step = evaluator_.counters.steps + evaluator_.counters.rejected;
   pace_.first_step = pace_.step - (origin_.resumed ? memory_.steps : 0);

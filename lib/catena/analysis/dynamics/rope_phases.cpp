@@ -68,13 +68,16 @@ std::vector<RopeTurns> RopePhases::turns(const SystemState& state) const {
   return turns;
 }
 
-void RopePhases::add_transitions(std::vector<Transition>& transitions) {
+void RopePhases::add_transitions(std::vector<Transition>& transitions, double length) {
   watched_.clear();
   for (std::size_t r = 0; r < routes_.size(); ++r) {
     const std::shared_ptr<const RouteWatch> tangents = watches_[r];
     const RopeRoute* route = &routes_[r];
     const auto watch = [&](int node, End ends, auto value) {
-      transitions.push_back({[route, value](const Snapshot& s) { return value(frames_of(s.evaluator, *route)); }, 1});
+      // Angles, and the square of a length.
+      const double size = ends == End::circle ? length * length : 1;
+      transitions.push_back({[route, value](const Snapshot& s) { return value(frames_of(s.evaluator, *route)); }, 1,
+                             MotionSizes::least_part * size});
       watched_.push_back({r, node, ends});
     };
     for (const int node : tangents->pulleys()) {

@@ -29,8 +29,8 @@ class RopePhases {
   /// Finds the ways where the evaluator is, going on from what `state` says of ropes; `model` becomes one with these
   /// where it has others.
   Report start(const SystemState& state, const Evaluator& evaluator, std::shared_ptr<const Model>& model);
-  /// What ends the present phase, behind the transitions there are.
-  void add_transitions(std::vector<Transition>& transitions);
+  /// What ends the present phase, behind the transitions there are. `length`: the length scale.
+  void add_transitions(std::vector<Transition>& transitions, double length);
   /// Transition k of these ended it, where the evaluator is: `model` becomes one with the next way.
   Report change(std::size_t k, const Evaluator& evaluator, std::shared_ptr<const Model>& model);
   /// How far the ropes are wound at a place of the present phase.

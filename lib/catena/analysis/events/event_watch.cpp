@@ -9,8 +9,6 @@ namespace {
 
 // A distance from the value below this part of the column's size counts as zero.
 constexpr double rounding = 1e-13;
-// The size of what may be nothing but rounding, in units of its column: distances below 1e-14 count as zero then.
-constexpr double least_size = 0.1;
 // Of the time between two samples: columns that reach their values within rounding at one instant do so this near to
 // it.
 constexpr double one_instant = 1e-3;
@@ -36,10 +34,22 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
       static_cast<void>(model.element_type(event.element));  // throws for what is none
   }
   side_.assign(events_.size(), 0);
-  for (const Event& event : events_) largest_.push_back(event.value == 0 ? least_size : 0);
+  largest_.assign(events_.size(), 0);
+  // What authors compute has no size that is known.
+  for (std::size_t k = 0; k < events_.size(); ++k) {
+    if (events_[k].value == 0 && columns_[k].info().front().unit == UnitKind::own)
+      largest_[k] = MotionSizes::least_part;
+  }
   found_at_.assign(events_.size(), -std::numeric_limits<double>::infinity());
   for (std::vector<double>& g : g_) g.resize(events_.size());
   angles_.resize(static_cast<std::size_t>(plan.moving));
+}
+
+void EventWatch::know_sizes(const MotionSizes& sizes) {
+  for (std::size_t k = 0; k < events_.size(); ++k) {
+    if (events_[k].value != 0) continue;
+    largest_[k] = std::max(largest_[k], MotionSizes::least_part * sizes.of(columns_[k].info().front().unit));
+  }
 }
 
 double EventWatch::tiny(std::size_t k) const { return rounding * std::max(largest_[k], std::abs(target(k))); }
@@ -78,8 +88,7 @@ void EventWatch::watch(std::vector<Transition> transitions, const Needs& needs) 
   side_.resize(events_.size());
   for (const Transition& transition : transitions_) side_.push_back(transition.side);
   largest_.resize(events_.size());
-  for (const Transition& transition : transitions_)
-    largest_.push_back(transition.scale > 0 ? transition.scale : least_size);
+  for (const Transition& transition : transitions_) largest_.push_back(transition.scale);
   found_at_.resize(events_.size());
   found_at_.resize(size, -std::numeric_limits<double>::infinity());
   for (std::vector<double>& g : g_) g.resize(size);

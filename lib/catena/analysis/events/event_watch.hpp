@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "catena/analysis/events/event_samples.hpp"
+#include "catena/analysis/events/motion_sizes.hpp"
 #include "catena/analysis/events/strike.hpp"
 #include "catena/analysis/motion/motion_memory.hpp"
 #include "catena/columns/column_set.hpp"
@@ -52,7 +53,7 @@ struct Event {
 struct Transition {
   std::function<double(const Snapshot&)> value;
   int side = 1;      ///< on which it begins: -1 or 1
-  double scale = 0;  ///< of what the value is a difference of, which decides on its rounding; 0: of the value itself
+  double scale = 0;  ///< of what the value is a difference of, where that is larger: it decides on its rounding
 };
 
 struct FoundEvent {
@@ -73,6 +74,8 @@ class EventWatch {
     Needs all = needs_;
     return all |= transition_needs_;
   }
+  /// Takes note of how large a motion is, against which the rounding of columns is measured that pass zero.
+  void know_sizes(const MotionSizes& sizes);
   /// Watches these beside the events, in place of those before; `needs`: what their values are made of.
   void watch(std::vector<Transition> transitions, const Needs& needs);
   /// Whether what was found is a transition, and which.

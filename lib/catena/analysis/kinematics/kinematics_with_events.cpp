@@ -43,6 +43,7 @@ class KinematicsWithEvents::Rows final : public RowObserver {
 
   bool observe(const Snapshot& row) override {
     row_ = &row;
+    watch_.know_sizes(sizes_of_motion(row.evaluator.length_scale(), row.qd));
     const bool goes_on = look_through(row.t);
     row_ = nullptr;
     if (!goes_on) return false;
