@@ -23,7 +23,8 @@ Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& pl
       rows_(evaluator_, solver_),
       reactions_(evaluator_, solver_, fixed_),
       watched_(evaluator_),
-      predictor_(at(plan().coordinates())) {
+      predictor_(at(plan().coordinates())),
+      jumps_(*model_) {
   if (!(options.tolerance > 0)) throw std::invalid_argument("kinematics: the tolerance must be above zero");
   if (options.branch < 0) throw std::invalid_argument("kinematics: branches are numbered from 1, and 0 chooses none");
   solver_.tolerance = options.tolerance;
@@ -41,6 +42,7 @@ void Kinematics::start_from(const SystemState& state) {
   stretch_.choice.reset();
   margins_.clear();
   curves_.found.clear();
+  jumps_.forget();
   rows_.forget_names();
   prepared_ = placed_ = now_.on_bridge = false;
   now_.has_velocity = now_.has_acceleration = false;

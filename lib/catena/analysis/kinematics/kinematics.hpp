@@ -16,6 +16,7 @@
 #include <optional>
 
 #include "catena/analysis/kinematics/course/bridged_stretch.hpp"
+#include "catena/analysis/kinematics/course/contact_jumps.hpp"
 #include "catena/analysis/kinematics/course/margin_history.hpp"
 #include "catena/analysis/kinematics/course/predictor.hpp"
 #include "catena/analysis/kinematics/driven_reactions.hpp"
@@ -103,7 +104,7 @@ class Kinematics {
   Report check_redundant_rates(double allowed, bool in_words);
 
   // Steps: kinematics_march.cpp.
-  enum class StepOutcome { made, dipped, too_long, crossed, left_curve };
+  enum class StepOutcome { made, dipped, too_long, crossed, left_curve, jumped };
   struct Pace;
   Report follow_to(double t);
   Report go_along_bridge(double t, Pace& pace);
@@ -111,6 +112,8 @@ class Kinematics {
   Report take_step(double next, double target, Pace& pace);
   Report shorten_step(StepOutcome outcome, double next, double target, Pace& pace, Report& passed);
   bool leaves_curve(double t);
+  bool contacts_jump(double t);
+  Report jumped() const;
   void remember_margins();
   bool predict(double t, std::span<double> q, std::span<double> qd, std::span<double> qdd) const;
 
@@ -182,7 +185,10 @@ class Kinematics {
   struct CurvePlaces {
     std::vector<CurvePlace> found;
     std::vector<double> places[3], halfway;
+    std::vector<CurvePlace> ends;  ///< of a step that is looked at
+    int jumping = -1;              ///< the element whose contact jumped in it
   } curves_;
+  ContactJumps jumps_;
   /// Of run(): its observer, which may end it between rows (nullptr outside of it), and the instants outside of which
   /// singular configurations are not reported; and whether some row of the last run was interpolated.
   struct Running {

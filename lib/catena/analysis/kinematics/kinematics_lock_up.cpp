@@ -1,4 +1,5 @@
-// Where no step can be made any more: dead points, the row there, and other singular configurations that end a motion.
+// Where no step can be made any more: dead points, the row there, other singular configurations that end a motion, and
+// places of contact that jump.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,6 +59,31 @@ Report Kinematics::stuck(double next, double target) {
       found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(element), model_->element_name(element))
             : "");
   singular_points_.push_back(std::move(point));
+  return report;
+}
+
+// Whether a place of contact jumps on the way to (t, trial_); where it goes on as before nothing is looked at.
+bool Kinematics::contacts_jump(double t) {
+  if (!jumps_.may_jump(curves_.found, evaluator_.curve_places(), t - now_.t)) return false;
+  curves_.ends = evaluator_.curve_places();
+  curves_.halfway = now_.q;
+  for (std::size_t k = 0; k < curves_.halfway.size(); ++k) curves_.halfway[k] += (trial_[k] - now_.q[k]) / 2;
+  evaluator_.go_to_curve_places(curves_.found);
+  evaluator_.set_configuration(curves_.halfway);
+  curves_.jumping = jumps_.jumping(curves_.found, evaluator_.curve_places(), curves_.ends);
+  evaluator_.go_to_curve_places(curves_.ends);
+  evaluator_.set_configuration(trial_);
+  return curves_.jumping >= 0;
+}
+
+// The same trouble has the same status in dynamics, whose steps end there as accelerations grow without bound.
+Report Kinematics::jumped() const {
+  Report report;
+  report.status = Status::step_too_small;
+  report.message = fmt::format(
+      "no step can be made at t = {:.12g} s: the place where {} \"{}\" touches its curve ends there, and the next one "
+      "lies elsewhere, so that the motion would jump; likely cause: a curve that is hollow there, or corners of it",
+      now_.t, model_->element_type(curves_.jumping), model_->element_name(curves_.jumping));
   return report;
 }
 

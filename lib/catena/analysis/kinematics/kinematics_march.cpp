@@ -50,6 +50,7 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
     return StepOutcome::too_long;
   }
   if (watched_.has_ends() && leaves_curve(t)) return StepOutcome::left_curve;
+  if (!curves_.found.empty() && contacts_jump(t)) return StepOutcome::jumped;
   if (plan().constant_jacobian) return StepOutcome::made;
   double turn = 0;
   solver_.distance(trial_, now_.q, &turn);
@@ -166,6 +167,7 @@ Report Kinematics::go_along_bridge(double t, Pace& pace) {
 // The step to `next`, which was solved for, is made; the next one may be longer.
 Report Kinematics::take_step(double next, double target, Pace& pace) {
   now_.q.swap(trial_);
+  if (!curves_.found.empty()) jumps_.accept(curves_.found, evaluator_.curve_places(), next - now_.t);
   now_.t = next;
   now_.has_velocity = now_.has_acceleration = pace.ignore_dips = false;
   ++evaluator_.counters.steps;
@@ -199,6 +201,10 @@ Report Kinematics::shorten_step(StepOutcome outcome, double next, double target,
   pace.made_since_failure = 0;
   if (!now_.has_velocity) find_velocity();
   const double length = std::abs(next - now_.t);
+  if (outcome == StepOutcome::jumped) {
+    pace.step = length / 2;
+    return pace.is_exhausted(now_.t) ? jumped() : Report{};
+  }
   if (outcome == StepOutcome::left_curve) {
     pace.step = length / 2;
     if (!pace.is_exhausted(now_.t)) return {};

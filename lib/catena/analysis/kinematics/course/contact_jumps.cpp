@@ -1,0 +1,87 @@
+#include "catena/analysis/kinematics/course/contact_jumps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "catena/base/at.hpp"
+#include "catena/elements/all.hpp"
+
+namespace catena {
+namespace {
+
+// Of a curve: shorter ways are not looked at.
+constexpr double short_way = 0.01;
+// Of a way: by how much the speed before may miss it.
+constexpr double as_before = 0.25;
+// The ratio of the ways in both halves of a step.
+constexpr double most_uneven = 3;
+
+/// From one place to another by the shorter way round; zero where a curve is not known, or a place is not.
+double way(double from, double to, double range) {
+  const double d = to - from;
+  return range > 0 && std::isfinite(d) ? d - range * std::round(d / range) : 0;
+}
+
+bool is_uneven(double first, double second, double range) {
+  const double longer = std::max(std::abs(first), std::abs(second));
+  return longer > short_way * range && longer > most_uneven * std::min(std::abs(first), std::abs(second));
+}
+
+}  // namespace
+
+ContactJumps::ContactJumps(const Model& model) {
+  for_each_list(model.constraints, [&](const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (SearchesCurve<E>) {
+      for (const auto& entry : list) {
+        ranges_.resize(std::max(ranges_.size(), at(entry.id) + 1));
+        const auto take = [&](const auto& field) {
+          if constexpr (std::is_same_v<std::remove_cvref_t<decltype(entry.element.*field.member)>, BodyCurve<double>>) {
+            const BodyCurve<double>& curve = entry.element.*field.member;
+            if (curve && !curve.is_line())
+              (field.body == 0 ? ranges_[at(entry.id)].i : ranges_[at(entry.id)].j) = curve.range();
+          }
+        };
+        std::apply([&](const auto&... field) { (take(field), ...); }, E::fields());
+      }
+    }
+  });
+}
+
+bool ContactJumps::may_jump(std::span<const CurvePlace> begin, std::span<const CurvePlace> end, double h) const {
+  const auto is_new = [&](double d, double range, const std::vector<double>& speed, std::size_t k) {
+    if (!(std::abs(d) > short_way * range)) return false;
+    return k >= speed.size() || !(std::abs(d - h * speed[k]) <= as_before * std::abs(d));
+  };
+  for (std::size_t k = 0; k < std::min(begin.size(), end.size()); ++k) {
+    const Ranges& range = ranges_[at(begin[k].element)];
+    if (is_new(way(begin[k].s_i, end[k].s_i, range.i), range.i, speed_i_, k) ||
+        is_new(way(begin[k].s_j, end[k].s_j, range.j), range.j, speed_j_, k))
+      return true;
+  }
+  return false;
+}
+
+int ContactJumps::jumping(std::span<const CurvePlace> begin, std::span<const CurvePlace> middle,
+                          std::span<const CurvePlace> end) const {
+  for (std::size_t k = 0; k < begin.size(); ++k) {
+    const Ranges& range = ranges_[at(begin[k].element)];
+    if (is_uneven(way(begin[k].s_i, middle[k].s_i, range.i), way(middle[k].s_i, end[k].s_i, range.i), range.i) ||
+        is_uneven(way(begin[k].s_j, middle[k].s_j, range.j), way(middle[k].s_j, end[k].s_j, range.j), range.j))
+      return begin[k].element;
+  }
+  return -1;
+}
+
+void ContactJumps::accept(std::span<const CurvePlace> begin, std::span<const CurvePlace> end, double h) {
+  speed_i_.assign(begin.size(), 0.0);
+  speed_j_.assign(begin.size(), 0.0);
+  for (std::size_t k = 0; k < begin.size() && h != 0; ++k) {
+    const Ranges& range = ranges_[at(begin[k].element)];
+    speed_i_[k] = way(begin[k].s_i, end[k].s_i, range.i) / h;
+    speed_j_[k] = way(begin[k].s_j, end[k].s_j, range.j) / h;
+  }
+}
+
+}  // namespace catena
