@@ -84,12 +84,14 @@ void report_contradiction(Evaluator& evaluator, std::span<const double> q, int w
 /// The equations of velocities at the evaluator's configuration.
 struct VelocityRows {
   const Plan& plan;
+  double length;
   Scaling scaling;
   std::vector<double> jacobian, nu;
 
   explicit VelocityRows(Evaluator& evaluator)
       : plan(evaluator.plan()),
-        scaling(plan, evaluator.length_scale()),
+        length(evaluator.length_scale()),
+        scaling(plan, length),
         jacobian(at(plan.trash_slot()) + 1),
         nu(at(plan.rows)) {
     evaluator.start_jacobian(jacobian);
@@ -135,8 +137,9 @@ double change_least(ConstraintSolver& solver, const VelocityRows& rows, const Wa
     double change = 0, size = 0;
     for (std::size_t c = 0; c < step.size(); ++c) {
       const double next = asked[c] + step[c];
-      change = std::max(change, std::abs(next - velocity[c]));
-      size = std::max(size, std::abs(next));
+      const double unit = c % 3 == 2 ? rows.length : 1;
+      change = std::max(change, unit * std::abs(next - velocity[c]));
+      size = std::max(size, unit * std::abs(next));
       velocity[c] = next;
       if (wanted.given[c]) asked[c] += wanted.velocity[c] - next;
       // This removes the effect of its small mass.

@@ -12,6 +12,8 @@ namespace {
 // Rounds in which a residual that shrinks to a half, at least, comes to rounding.
 constexpr int most_massless_rounds = 52;
 constexpr double massless_rounding = 1e-15;
+// Of accelerations: what the next round would change.
+constexpr double negligible = 1e-15;
 constexpr int most_probes = 4;  // random loads: a coordinate that resists all of them is rare, and only costs rounds
 
 }  // namespace
@@ -69,16 +71,18 @@ void ConstraintSolver::refine_motion(std::span<const double> Q, std::span<const 
     multiply_add(rest_.qdd, rest_.gamma);
     add_compliance<double>(lambda, rest_.gamma);
     solve_with_masses<double>(rest_.Q, rest_.gamma, rest_.qdd, rest_.lambda, scratch_, counters);
+    // Squares, by masses: metres beside radians.
     double change = 0, whole = 0;
     for (std::size_t c = 0; c < rest_.Q.size(); ++c) {
-      change = std::max(change, std::abs(rest_.qdd[c]));
-      whole = std::max(whole, std::abs(qdd[c]));
+      change = std::max(change, masses_.given[c] * rest_.qdd[c] * rest_.qdd[c]);
+      whole = std::max(whole, masses_.given[c] * qdd[c] * qdd[c]);
       qdd[c] += rest_.qdd[c];
     }
     for (std::size_t k = 0; k < rest_.lambda.size(); ++k) lambda[k] += rest_.lambda[k];
     if (round == 0) first_change = change;
     // Every round reduces its change by the same factor.
-    if (masses_.massless.empty() && (round > 2 || !(change * first_change > 1e-15 * whole * whole))) return;
+    if (masses_.massless.empty() && (round > 2 || !(change * first_change > negligible * negligible * whole * whole)))
+      return;
   }
 }
 

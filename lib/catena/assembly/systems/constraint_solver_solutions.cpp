@@ -14,10 +14,14 @@ namespace {
 // Five rounds gain what is regularised at the least pivots that are not.
 constexpr RefinementLimits rounding_of_change{.tolerance = 1e-14, .max_steps = 5};
 
-double largest(std::span<const double> numbers) {
+// The largest of numbers of rows, lengths beside angles: each in the root of its diagonal entry of S. Rows that move
+// nothing count for nothing.
+double largest(std::span<const double> numbers, std::span<const double> diagonal) {
   double most = 0;
-  for (double number : numbers) most = std::max(most, std::abs(number));
-  return most;
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    if (diagonal[k] > 0) most = std::max(most, numbers[k] * numbers[k] / diagonal[k]);
+  }
+  return std::sqrt(most);
 }
 
 }  // namespace
@@ -79,11 +83,12 @@ void ConstraintSolver::solve_refined(std::span<V> lambda, std::span<const V> b, 
 
 void ConstraintSolver::solve(std::span<const double> b, std::span<double> x, std::span<double> lambda,
                              Counters& counters) {
-  const double size = largest(b);
+  const double size = largest(b, diagonal_values_);
   const auto eliminate_in = [&](std::span<double> r) { factors_.solve(r, counters); };
   const auto residual = [&](std::span<const double> multipliers, std::span<double> r) {
     find_residual<double>(b, multipliers, x, r);
-    return size > 0 ? largest(r) / size : largest(r);
+    const double left = largest(r, diagonal_values_);
+    return size > 0 ? left / size : left;
   };
   std::copy(b.begin(), b.end(), lambda.begin());
   if (plan_->rows > 0) eliminate_in(lambda);
