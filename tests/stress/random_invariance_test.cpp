@@ -5,6 +5,7 @@
 
 #include "oracles/random_seeds.hpp"
 #include "stress/random_analyses.hpp"
+#include "stress/touching_scene.hpp"
 
 namespace catena::testing {
 namespace {
@@ -38,6 +39,14 @@ TEST(RandomInvariance, UnitsDoNotMatterToAnyAnalysis) {
     EXPECT_GT(all, 0) << type;
     EXPECT_GE(2 * seen[type + " ok"], all) << type;
   }
+}
+
+TEST(RandomInvariance, UnitsDoNotMatterWhereBodiesTouch) {
+  std::map<std::string, int> seen;
+  expect_no_fault(first_case(), last_case(1200),
+                  [&](unsigned seed) { return fault_of_units_where_bodies_touch(seed, seen); });
+  print_shares("motions with contacts, stops, cables and events in other units", seen);
+  EXPECT_GE(seen["ok"], 0.95 * stress_cases(1200));
 }
 
 TEST(RandomInvariance, AFarOriginDoesNotMatter) {

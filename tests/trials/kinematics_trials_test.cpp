@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "oracles/scene_text.hpp"
 #include "trials/trial.hpp"
 
 namespace catena::testing {
@@ -29,6 +30,63 @@ T value_of(const FieldRecord& record, const std::string& name) {
     if (key == name) return std::get<T>(value);
   }
   throw std::runtime_error("no " + name);
+}
+
+// A cam of radius r(a) = m + b cos 2 (a - pi / 2) that turns under a flat foot; spline through 72 points.
+std::string hollow_cam(double m, double b, double rate, double until) {
+  std::string angles, radii;
+  for (int k = 0; k <= 72; ++k) {
+    const double a = 2 * pi * k / 72;
+    angles += (k > 0 ? "," : "") + text_of(a);
+    radii += (k > 0 ? "," : "") + text_of(m + b * std::cos(2 * ((k < 72 ? a : 0) - pi / 2)));
+  }
+  std::string analyses;
+  for (const char* type : {"kinematics", "inverse_dynamics", "dynamics"}) {
+    analyses += std::string(analyses.empty() ? "" : ",") + R"({"type": ")" + type +
+                R"(", "from": "initial", "until": )" + text_of(until) + R"(, "every": )" + text_of(until / 20) + "}";
+  }
+  return R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"cam": {"mass": 1, "inertia": 0.1, "position": [0, 0]},
+    "foot": {"mass": 1, "inertia": 0.1, "position": [0, )" +
+         text_of(m + b) + R"(]}}, "constraints": [{"type": "revolute", "i": "ground", "j": "cam"},
+    {"type": "translational", "i": "ground", "j": "foot", "axis_i": [0, 1], "axis_j": [0, 1]},
+    {"type": "cam_flat", "name": "E", "i": "cam", "j": "foot", "axis_j": [1, 0],
+     "curve": {"polar": {"angle": [)" +
+         angles + R"(], "radius": [)" + radii + R"(]}}}],
+    "drivers": [{"type": "absolute_angle", "i": "cam", "value": {"polynomial": [0, )" +
+         text_of(rate) + R"(]}}], "outputs": ["foot.y"], "analyses": [)" + analyses + "]}";
+}
+
+// The foot touches where the cam's tangent lies along it: at angle a in the cam, once this has turned by
+// pi - psi(a), psi = a + atan2(r, r'). Where the cam is hollow, psi turns back at r^2 + 2 r'^2 - r r'' = 0: there the
+// place that was followed ends, and every analysis with it.
+TEST(KinematicTrials, AnalysesEndWhereThePlaceOnAHollowCamEnds) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const double m = random(0.3, 0.6), b = m * random(0.24, 0.34), rate = random(0.5, 2) * (seed % 2 ? 1 : -1);
+    const auto turned_back = [&](double a) {
+      const double r = m + b * std::cos(2 * a - pi), r1 = -2 * b * std::sin(2 * a - pi),
+                   r2 = -4 * b * std::cos(2 * a - pi);
+      return std::pair(r * r + 2 * r1 * r1 - r * r2 > 0, pi - (a + std::atan2(r, r1)));
+    };
+    double low = 0, high = pi / 2;
+    for (int k = 0; k < 60; ++k) (turned_back((low + high) / 2).first ? high : low) = (low + high) / 2;
+    const double end = turned_back(high).second / std::abs(rate);
+    const TextRun run = run_text(hollow_cam(m, b, rate, 2 * end));
+    ASSERT_EQ(run.outcome.analyses.size(), 3u) << run.outcome.error_text;
+    std::vector<double> instants;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const AnalysisReport& report = run.analysis(k).report;
+      EXPECT_EQ(report.status, Status::step_too_small) << run.analysis(k).type << ": " << report.message;
+      const std::size_t at = report.message.find("t = ");
+      ASSERT_NE(at, std::string::npos) << report.message;
+      instants.push_back(std::stod(report.message.substr(at + 4)));
+      // The spline is another curve by some 1e-4.
+      EXPECT_NEAR(instants.back(), end, 1e-3 * end) << run.analysis(k).type;
+      EXPECT_NEAR(instants.back(), instants.front(), 1e-6 * end) << run.analysis(k).type;
+    }
+    EXPECT_NE(run.analysis(0).report.message.find("\"E\""), std::string::npos) << run.analysis(0).report.message;
+  }
 }
 
 // Cranks of 1 kg and 1 m that turn alike: each carries its own centripetal force, and a third of the bar's.

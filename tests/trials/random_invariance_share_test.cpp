@@ -5,6 +5,7 @@
 // equations without freedom there, for equations that are not met.
 #include "oracles/random_seeds.hpp"
 #include "stress/random_analyses.hpp"
+#include "stress/touching_scene.hpp"
 
 namespace catena::testing {
 namespace {
@@ -34,6 +35,36 @@ TEST(OtherUnitsOfAnalyses, DoNotMatter) {
   expect_no_fault(1, 30, [&](unsigned seed) { return fault_of_units(seed, seen); });
   // A dead point of a mechanism of nanometres, taken for a bifurcation.
   EXPECT_EQ(fault_of_units(600033, seen), "");
+  // Velocities at the start, whose changes in m/s and in rad/s were compared with each other.
+  for (const unsigned seed : {792u, 1074u}) EXPECT_EQ(fault_of_units(seed, seen), "") << seed;
+}
+
+// Places where bodies touch, and events, once had lengths, speeds and forces of their own: 1e-14 m, 1e-14 m/s, 1e-14 N.
+TEST(OtherUnitsOfContacts, DoNotMatter) {
+  std::map<std::string, int> seen;
+  expect_no_fault(1, 48, [&](unsigned seed) { return fault_of_units_where_bodies_touch(seed, seen); });
+  EXPECT_GE(seen["ok"], 47);
+}
+
+// A particle falls h, comes back with e of its speed, and is on its second flight when it is looked at.
+TEST(OtherUnitsOfContacts, ABouncingParticleIsWhereItIsAtAnySize) {
+  expect_no_fault(1, 19, [](unsigned seed) -> std::string {
+    const double h = std::pow(10.0, static_cast<double>(seed) - 10), e = 0.3 + 0.02 * seed, g = 9.81 * h;
+    const double fall = std::sqrt(2 * h / g), back = e * g * fall, t = fall + 0.6 * 2 * back / g;
+    std::ostringstream text;
+    text.precision(17);
+    text << R"({"catena": 1, "gravity": [0, )" << -g << R"(], "bodies": {"b": {"mass": 1, "particle": true,
+      "position": [0, )"
+         << h << R"(]}}, "forces": [{"type": "contact", "i": "ground", "j": "b", "restitution": )" << e
+         << R"(, "curve": {"line": {"point": [0, 0], "axis": [1, 0]}}}], "outputs": ["b.y", "b.vy"],
+      "analyses": [{"type": "dynamics", "at": [)"
+         << t << "]}]}";
+    const TextRun run = run_text(text.str());
+    if (run.outcome.exit_code > 0) return run.outcome.error_text + run.analysis().report.message;
+    const double later = t - fall, y = back * later - g * later * later / 2, v = back - g * later;
+    const double off = std::max(std::abs(run.last("b.y") - y) / h, std::abs(run.last("b.vy") - v) / back);
+    return off <= 1e-8 ? "" : "off by " + std::to_string(off) + " of its size";
+  });
 }
 
 }  // namespace
