@@ -19,8 +19,6 @@ constexpr int max_iterations = 200;
 // Steps that turn bodies by more than this multiple are long along nearly dependent combinations of equations. Scaling
 // the whole step would leave the other equations unmet, so damping shortens only these parts.
 constexpr double far_too_long = 4;
-// Residuals above this overflow when they are squared.
-constexpr double largest_residual = 1e120;
 /// Start of a repeated search: near the end of the last one, or near the estimate, every coordinate displaced by at
 /// most `displacement` (rad, attachment distances).
 struct Start {
@@ -38,6 +36,8 @@ constexpr std::size_t most_starts = 24;
 // that end regularly gain digits at every step; a few such quarters in a row, between these ratios, are none of theirs.
 constexpr double slow_least = 0.1, slow_most = 0.6;
 constexpr int most_slow_steps = 4;
+// Below this misfit, so near to the crossing, equations are regularised: steps are slower, or faster by chance.
+constexpr double least_told = 1e-9;
 // No further start is tried after so many iterations times equations: a factorization costs a microsecond a row.
 constexpr double most_work = 4e6;
 
@@ -94,7 +94,8 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
   int slow_steps = 0;
   for (int k = 0; k < most_iterations; ++k) {
     const double residual = scaling_.row_norm(phi_), ratio = residual / outcome.residual;
-    slow_steps = k > 0 && ratio > slow_least && ratio < slow_most ? slow_steps + 1 : 0;
+    if (k == 0 || (!(ratio > slow_least) && residual > least_told)) slow_steps = 0;
+    if (k > 0 && ratio > slow_least && ratio < slow_most) ++slow_steps;
     ends_beside_crossing_ = slow_steps >= most_slow_steps;
     outcome.residual = residual;
     // Coordinates of a body that has moved by many length scales are rounded.
@@ -177,14 +178,6 @@ bool Assembler::restore_from_beside(std::span<double> q, std::span<const double>
   return !beside_crossing.empty();
 }
 
-int Assembler::element_out_of_range(std::span<const double> q) {
-  merit(q);
-  for (std::size_t row = 0; row < phi_.size(); ++row) {
-    if (!(std::abs(phi_[row]) < largest_residual)) return plan_.row_element[row];
-  }
-  return -1;
-}
-
 AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   AssemblyOutcome outcome;
   if (plan_.rows == 0) return outcome;
@@ -237,9 +230,9 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
     evaluator_.set_configuration(q);
     return outcome;
   }
-  if (weighted_distance(q, estimate) > 0) {
-    approach_estimate(q, estimate, tolerance, outcome);
-  }
+  const bool beside_crossing = ends_beside_crossing_;
+  if (weighted_distance(q, estimate) > 0) approach_estimate(q, estimate, tolerance, outcome);
+  if (beside_crossing || ends_beside_crossing_) land_on_crossing(q);
   merit(q);
   outcome.residual = scaling_.row_norm(phi_);
   for (const int i : plan_.coordinate) {

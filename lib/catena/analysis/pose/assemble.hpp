@@ -47,6 +47,7 @@ class Assembler {
   bool restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome);
   bool restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance, bool far_too,
                            AssemblyOutcome& outcome);
+  void land_on_crossing(std::span<double> q);
   void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
                          AssemblyOutcome& outcome);
   /// z: the part of W^-1 r that the constraints allow, at the place that was factored. r becomes W z: the part that

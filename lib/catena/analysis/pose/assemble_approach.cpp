@@ -46,6 +46,14 @@ struct CurvatureEntry {
   int row, column;
   double value;
 };
+// Residuals above this overflow when they are squared.
+constexpr double largest_residual = 1e120;
+// Of the misfit, a square: what may be left of it on a crossing.
+constexpr double left_on_crossing = 1e-3;
+// From so far away steps lead to a crossing, rad or length scales: their equations are well conditioned still, and five
+// halvings determine it to the fifth power of their distance.
+constexpr double way_to_crossing = 0.03;
+constexpr int halvings_to_crossing = 5, corrections_on_crossing = 2;
 
 }  // namespace
 
@@ -131,6 +139,58 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
     std::copy(candidate.begin(), candidate.end(), q.begin());
     distance = weighted_distance(q, estimate);
   }
+}
+
+int Assembler::element_out_of_range(std::span<const double> q) {
+  merit(q);
+  for (std::size_t row = 0; row < phi_.size(); ++row) {
+    if (!(std::abs(phi_[row]) < largest_residual)) return plan_.row_element[row];
+  }
+  return -1;
+}
+
+// Where branches cross or fold, x*, Newton's steps halve the distance to it, from whatever side they come, so that the
+// equations end nearly dependent and met to rounding a square root of that away from it. From further away
+//
+//   x_k = x* + a 2^-k + b 4^-k + ...        x_k^(m) = x_k+1^(m-1) + (x_k+1^(m-1) - x_k^(m-1)) / (2^m - 1)
+//
+// has x*, as far as terms go (Neville). q is left where it is if that meets the equations no better.
+void Assembler::land_on_crossing(std::span<double> q) {
+  const double now = merit(q);
+  const std::vector<CurvePlace> places = evaluator_.curve_places();
+  const auto find_step = [&] {
+    evaluator_.jacobian(values_);
+    if (!solver_->factorize(values_, evaluator_.counters)) return false;
+    solver_->solve(phi_, step_, lambda_, evaluator_.counters);
+    return true;
+  };
+  std::vector<std::vector<double>> x(halvings_to_crossing, std::vector<double>(q.size()));
+  bool found = now > 0 && find_step() && extent(step_) > 0;
+  if (found) advance(q, way_to_crossing / extent(step_), trial_);
+  for (std::size_t k = 0; found && k < x.size(); ++k) {
+    found = std::isfinite(merit(trial_)) && find_step();
+    advance(trial_, -1, x[k]);
+    trial_ = x[k];
+  }
+  double power = 2;
+  for (std::size_t m = 1; m < x.size(); ++m, power *= 2) {
+    for (std::size_t k = 0; k + m < x.size(); ++k) {
+      for (std::size_t c = 0; c < q.size(); ++c) x[k][c] = x[k + 1][c] + (x[k + 1][c] - x[k][c]) / (power - 1);
+    }
+  }
+  // What is left is across the branches, where equations are as good as anywhere.
+  for (int k = 0; found && k < corrections_on_crossing; ++k) {
+    merit(x[0]);
+    found = find_step();
+    advance(x[0], -1, trial_);
+    x[0] = trial_;
+  }
+  if (found && merit(x[0]) < left_on_crossing * now) {
+    std::copy(x[0].begin(), x[0].end(), q.begin());
+    return;
+  }
+  evaluator_.go_to_curve_places(places);
+  merit(q);
 }
 
 }  // namespace catena
