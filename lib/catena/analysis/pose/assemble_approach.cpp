@@ -50,10 +50,10 @@ struct CurvatureEntry {
 constexpr double largest_residual = 1e120;
 // Of the misfit, a square: what may be left of it on a crossing.
 constexpr double left_on_crossing = 1e-3;
-// From so far away steps lead to a crossing, rad or length scales: their equations are well conditioned still, and five
-// halvings determine it to the fifth power of their distance.
+// From so far away steps lead to a crossing, rad or length scales: their equations are well conditioned still, and
+// eight halvings determine it to rounding.
 constexpr double way_to_crossing = 0.03;
-constexpr int halvings_to_crossing = 5, corrections_on_crossing = 2;
+constexpr int halvings_to_crossing = 8, corrections_on_crossing = 2;
 
 }  // namespace
 
