@@ -38,6 +38,8 @@ constexpr double slow_least = 0.1, slow_most = 0.6;
 constexpr int most_slow_steps = 4;
 // Below this misfit, so near to the crossing, equations are regularised: steps are slower, or faster by chance.
 constexpr double least_told = 1e-9;
+// Searches that end regularly take fewer iterations; a longer one may have come beside a crossing on its way, too.
+constexpr int long_search = 20;
 // No further start is tried after so many iterations times equations: a factorization costs a microsecond a row.
 constexpr double most_work = 4e6;
 
@@ -230,9 +232,8 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
     evaluator_.set_configuration(q);
     return outcome;
   }
-  const bool beside_crossing = ends_beside_crossing_;
   if (weighted_distance(q, estimate) > 0) approach_estimate(q, estimate, tolerance, outcome);
-  if (beside_crossing || ends_beside_crossing_) land_on_crossing(q);
+  if (outcome.iterations > long_search) land_on_crossing(q);
   merit(q);
   outcome.residual = scaling_.row_norm(phi_);
   for (const int i : plan_.coordinate) {
