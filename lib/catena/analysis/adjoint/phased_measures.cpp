@@ -75,6 +75,20 @@ PhasedMeasures::Point PhasedMeasures::point_of(double t, Side side, const Vector
   return {t, side, {y.begin(), middle}, {middle, y.end()}};
 }
 
+// A step of the motion, in parts where its forces are smooth in these alone.
+bool PhasedMeasures::keep_steps(const MotionStretch& stretch) {
+  take_parts(smooth_parts(stretch, power_places(contacts_, phases_.back().states, places_)));
+  if (part_ends().empty()) return lose(stretch.to, "the motion could not be looked at");
+  double from = stretch.from;
+  for (const double to : part_ends()) {
+    Step step{from, to, {}, {}, {}, phases_.size() - 1};
+    if (!look_at(stretch, from, step.begin, &step.places) || !look_at(stretch, to, step.end, nullptr)) return false;
+    steps_.push_back(std::move(step));
+    from = to;
+  }
+  return true;
+}
+
 void PhasedMeasures::cover(const MotionStretch& stretch) {
   if (!why().empty()) return;
   if (phases_.empty()) phases_.emplace_back();
@@ -87,10 +101,7 @@ void PhasedMeasures::cover(const MotionStretch& stretch) {
     lose(stretch.to, "functions of time jump together that move apart with the parameters");
     return;
   }
-  Step step{stretch.from, stretch.to, {}, {}, {}, phases_.size() - 1};
-  if (!look_at(stretch, stretch.from, step.begin, &step.places) || !look_at(stretch, stretch.to, step.end, nullptr))
-    return;
-  steps_.push_back(std::move(step));
+  if (!keep_steps(stretch)) return;
   ended_by_ = {};
   if (stretch.ended_by >= 0) find_rate(stretch);
   if (instant.order != 1 && !instant.moves()) return;

@@ -102,6 +102,7 @@ class PhasedMeasures final : public StateDerivatives, public PhaseWitness, publi
   bool look_at(const MotionStretch& stretch, double t, Vector& y, std::vector<CurvePlace>* places);
   Point point_of(double t, Side side, const Vector& y) const;
   void hold(const MotionPhase& phase) { equations_->hold(phase.released, phase.states); }
+  bool keep_steps(const MotionStretch& stretch);
   void find_rate(const MotionStretch& stretch);
   Crossing crossing_of(const MotionPhase& phase);
   std::string obstacle_of(const MotionPhase& phase, const Crossing& crossing) const;

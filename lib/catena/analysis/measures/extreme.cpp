@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
 
-// Two values that differ by less than this part of the quantity's size are a tie: its instants are known to 1e-10.
-constexpr double tie = 1e-9;
 // A top may turn out this much higher than the parabola through samples makes it: of the size, see motion_samples.hpp.
 constexpr double slack = 1e-4;
 // Half the width of the window of the polynomial, in parts of the part.
@@ -25,6 +24,12 @@ std::optional<double> top(double t0, double v0, double t1, double v1, double t2,
   const double bend = (d2 - d1) / (t2 - t0);
   if (!(bend < 0)) return {};
   return (t0 + t1) / 2 - d1 / (2 * bend);
+}
+
+/// The value of that parabola at t.
+double on_parabola(double t0, double v0, double t1, double v1, double t2, double v2, double t) {
+  const double d1 = (v1 - v0) / (t1 - t0), d2 = (v2 - v1) / (t2 - t1);
+  return v0 + (t - t0) * (d1 + (t - t1) * (d2 - d1) / (t2 - t0));
 }
 
 struct Stationary {
@@ -69,30 +74,39 @@ class Polynomial {
 
 }  // namespace
 
-void Extreme::consider(MotionSample sample, double value, double reach) {
+void Extreme::consider(MotionSample sample, double value, double reach, double valley) {
   if (!std::isfinite(value)) {
     if (!undefined_) undefined_ = sample.t;
     return;
   }
   size_ = std::max(size_, std::abs(value));
-  if (!best_ || value > largest_ + tie * size_) {
+  if (!best_ || value > largest_ + tie_ * size_) {
     others_.clear();
     best_ = std::move(sample);
     largest_ = value;
     return;
   }
   // Of the samples of one top the highest counts; further away an equal one is another top.
-  const bool apart = std::abs(sample.t - best_->t) > reach;
+  const bool apart = std::abs(sample.t - best_->t) > reach || valley < std::min(value, largest_) - tie_ * size_;
   if (value > largest_) {
     if (apart) others_.push_back(std::move(*best_));
     best_ = std::move(sample);
     largest_ = value;
-  } else if (value >= largest_ - tie * size_ && apart) {
+  } else if (value >= largest_ - tie_ * size_ && apart) {
     others_.push_back(std::move(sample));
   }
 }
 
-void Extreme::add(const MotionSample& sample) { consider(sample, quantity_(sample.value), 0); }
+void Extreme::note_slopes(const MotionSample& sample) {
+  slopes_.resize(sample.derivative.size(), 0.0);
+  for (std::size_t n = 0; n < slopes_.size(); ++n) {
+    if (std::isfinite(sample.derivative[n])) slopes_[n] = std::max(slopes_[n], std::abs(sample.derivative[n]));
+  }
+}
+
+void Extreme::add(const MotionSample& sample) {
+  consider(sample, quantity_(sample.value), 0, std::numeric_limits<double>::infinity());
+}
 
 // The top near `centre` by the polynomial through seven instants around it, inside of the stretch; nothing where that
 // is no better than `known`, or misses what is there.
@@ -171,10 +185,23 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
     if (!sample) return {};
     return quantity_(sample->value);
   };
+  // The lowest sample since the best, up to an instant of this part.
+  const auto lowest_until = [&](double instant) {
+    double lowest = best_ && best_->t < t.front() ? lowest_ : std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < count && best_; ++k) {
+      if (t[k] > best_->t && t[k] < instant) lowest = std::min(lowest, v[k]);
+    }
+    return lowest;
+  };
   const auto take = [&](double instant) {
     if (auto sample = samples.look(piece, instant, with_derivative)) {
       const double value = quantity_(sample->value);
-      consider(std::move(*sample), value, 2 * (t.back() - t.front()));
+      consider(std::move(*sample), value, 2 * (t.back() - t.front()), lowest_until(instant));
+    }
+    if (!with_derivative || others_.empty()) return;
+    // A part is about a radian of a swing: what vanishes at its top does not in both of these.
+    for (const std::size_t beside : {std::size_t{2}, std::size_t{6}}) {
+      if (const auto sample = samples.look({piece.stretch}, t[beside], true)) note_slopes(*sample);
     }
   };
   const auto promises = [&](double value) { return !best_ || value + slack * size_ > largest_; };
@@ -186,9 +213,16 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
     const auto found = Polynomial(x, v).stationary((start - t.front()) / length, x[from], x[to]);
     return found ? std::optional(t.front() + length * found->x) : std::nullopt;
   };
+  // What the parabola through a sample and its neighbours comes up to beside it.
+  const auto foreseen = [&](std::size_t k) {
+    const std::size_t i = std::clamp<std::size_t>(k, 1, count - 2) - 1;
+    const std::optional<double> at_top = top(t[i], v[i], t[i + 1], v[i + 1], t[i + 2], v[i + 2]);
+    const bool beside = at_top && *at_top > t[k == 0 ? 0 : k - 1] && *at_top < t[std::min(k + 1, count - 1)];
+    return beside ? on_parabola(t[i], v[i], t[i + 1], v[i + 1], t[i + 2], v[i + 2], *at_top) : v[k];
+  };
   for (std::size_t k = 0; k < count; ++k) {
     const bool end = k == 0 || k == count - 1;
-    if (!promises(v[k])) continue;
+    if (!promises(std::max(v[k], foreseen(k)))) continue;
     if (!end && v[k] >= v[k - 1] && v[k] >= v[k + 1] && (v[k] > v[k - 1] || v[k] > v[k + 1])) {
       const Peak before{t[k - 1], v[k - 1]}, here{t[k], v[k]}, after{t[k + 1], v[k + 1]};
       if (const auto peak = locate(before, here, after, guess(k - 1, t[k], k + 1), length, piece, at)) take(peak->t);
@@ -207,6 +241,7 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
       }
     }
   }
+  lowest_ = lowest_until(std::numeric_limits<double>::infinity());
 }
 
 }  // namespace catena

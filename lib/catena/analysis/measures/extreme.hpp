@@ -9,7 +9,9 @@
 // on.
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -23,6 +25,8 @@ class Extreme {
   using Quantity = std::function<double(std::span<const double>)>;
   explicit Extreme(Quantity quantity) : quantity_(std::move(quantity)) {}
 
+  /// Of its size: what the quantity is known to, if not better.
+  void know_accuracy(double part) { tie_ = std::max(tie_, part); }
   void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionPiece& piece,
            bool with_derivative);
   /// An instant by itself.
@@ -32,8 +36,11 @@ class Extreme {
   /// Its value is quantity(best().value).
   const MotionSample& best() const { return *best_; }
   double value() const { return largest_; }
-  /// Other instants where the quantity is as large to 1e-9 of its size: ties.
+  /// Other instants where the quantity is as large to 1e-9 of its size, or to what it is known to: ties.
   const std::vector<MotionSample>& others() const { return others_; }
+  /// With ties and derivatives: the largest size of a derivative (by its number in a sample) at these instants and
+  /// others between.
+  double slope_nearby(std::size_t number) const { return number < slopes_.size() ? slopes_[number] : 0; }
   /// An instant at which the quantity is not a number; nothing if it is one everywhere.
   const std::optional<double>& undefined() const { return undefined_; }
 
@@ -45,13 +52,19 @@ class Extreme {
   std::optional<Peak> locate(Peak a, Peak middle, Peak b, std::optional<double> guess, double length,
                              const MotionPiece& piece, const At& at) const;
   std::optional<Peak> settle(double centre, double h, double known, const MotionPiece& piece, const At& at) const;
-  /// Samples within `reach` of the best, s, belong to the same top.
-  void consider(MotionSample sample, double value, double reach);
+  /// Samples within `reach` of the best, s, belong to the same top, unless `valley`, the lowest value between, is below
+  /// both.
+  void consider(MotionSample sample, double value, double reach, double valley);
+  void note_slopes(const MotionSample& sample);
 
   Quantity quantity_;
   std::optional<MotionSample> best_;
   double largest_ = 0, size_ = 0;
+  double lowest_ = std::numeric_limits<double>::infinity();  // of the samples since the best
+  double tie_ =
+      1e-9;  // two values that differ by less than this part of the size are a tie: instants are known to 1e-10
   std::vector<MotionSample> others_;
+  std::vector<double> slopes_;
   std::optional<double> undefined_;
 };
 

@@ -13,6 +13,10 @@ constexpr double no_gradient = 1e-11;
 // Limits from both sides of an instant that differ by less than this part of the column's size are the same.
 constexpr double no_jump = 1e-10;
 
+// A root mean square is none where parameters of size 1 make a change of 1e14 times it: the column is zero but for
+// rounding, 1e-16 of what it is a difference of.
+constexpr double zero_but_for_rounding = 1e-14;
+
 std::string not_a_number_at(double t) { return fmt::format("its column is not a number at t = {:.9g} s", t); }
 
 }  // namespace
@@ -64,6 +68,7 @@ void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples:
   const double length = part.back().t - part.front().t;
   sum_gradient_.resize(parameters_, 0.0);
   squares_gradient_.resize(parameters_, 0.0);
+  squared_slopes_.resize(parameters_, 0.0);
   duration_ += length;
   for (std::size_t k = 0; k < MotionSamples::nodes; ++k) {
     const MotionSample& sample = part[k + 1];
@@ -75,6 +80,7 @@ void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples:
       const double gradient = gradient_of(sample, column_, p);
       sum_gradient_[p] += weight * gradient;
       squares_gradient_[p] += weight * 2 * v * gradient;
+      squared_slopes_[p] += weight * gradient * gradient;
     }
   }
   if (piece.breaks_before && before_break_ && part.front().t == before_break_->first)
@@ -120,12 +126,14 @@ void MeasureSet::Account::add_row(const MotionSample& sample, bool only_rows) {
   ++rows_;
   sum_gradient_.resize(parameters_, 0.0);
   squares_gradient_.resize(parameters_, 0.0);
+  squared_slopes_.resize(parameters_, 0.0);
   const double v = sample.value[column_];
   sum_ += v;
   squares_ += v * v;
   for (std::size_t p = 0; p < parameters_; ++p) {
     sum_gradient_[p] += gradient_of(sample, column_, p);
     squares_gradient_[p] += 2 * v * gradient_of(sample, column_, p);
+    squared_slopes_[p] += gradient_of(sample, column_, p) * gradient_of(sample, column_, p);
   }
 }
 
@@ -140,8 +148,11 @@ void MeasureSet::Account::check_ties(MeasureResult& result, const Extreme& extre
   for (const MotionSample& other : extreme.others()) {
     for (std::size_t p = 0; p < parameters_; ++p) {
       const double here = gradient_of(extreme.best(), column_, p), there = gradient_of(other, column_, p);
-      // Gradients of two instants of a tie that differ by less than this part of their size are the same.
-      const double allowed = thresholds::same_value * std::max(std::abs(here), std::abs(there)) + no_gradient * size_;
+      // Gradients of two instants of a tie that differ by less than this part of their size are the same. Where they
+      // vanish they are as good as those of the column elsewhere: of a swing that comes back the amplitude may not
+      // depend on what its phase does.
+      const double unit = std::max({std::abs(here), std::abs(there), extreme.slope_nearby(column_ * parameters_ + p)});
+      const double allowed = thresholds::same_value * unit + no_gradient * size_;
       if (std::abs(here - there) <= allowed) continue;
       result.gradient[p] = none;
       result.trouble = fmt::format(
@@ -186,8 +197,24 @@ void MeasureSet::Account::give_integral(MeasureResult& result) const {
   const bool mean = request_.kind == MeasureKind::mean;
   const double value = mean ? sum_ / duration : std::sqrt(squares_ / duration);
   result.value = value;
-  for (std::size_t p = 0; p < parameters_ && p < sum_gradient_.size(); ++p) {
-    result.gradient[p] = mean ? sum_gradient_[p] / duration : squares_gradient_[p] / (2 * value * duration);
+  if (!mean) return give_rms_gradient(result, value);
+  for (std::size_t p = 0; p < parameters_ && p < sum_gradient_.size(); ++p)
+    result.gradient[p] = sum_gradient_[p] / duration;
+}
+
+// Of a column v that is zero everywhere it is |dp| rms(v_p) beside: none, unless v_p is zero as well.
+void MeasureSet::Account::give_rms_gradient(MeasureResult& result, double value) const {
+  const double duration = rows_ > 0 ? static_cast<double>(rows_) : duration_;
+  for (std::size_t p = 0; p < parameters_ && p < squares_gradient_.size(); ++p) {
+    const double by_itself = std::sqrt(squared_slopes_[p] / duration);
+    if (value == 0 && by_itself == 0) continue;
+    result.gradient[p] = squares_gradient_[p] / (2 * value * duration);
+    if (!(value <= zero_but_for_rounding * by_itself)) continue;
+    result.gradient[p] = none;
+    result.trouble = fmt::format(
+        "its column is zero throughout, and grows on both sides of the present value of a parameter, by {:.3g} a unit: "
+        "a root mean square has a kink there",
+        by_itself);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "catena/analysis/measures/measure_set.hpp"
 
@@ -41,8 +42,8 @@ class MeasureSet::Account {
            request_.kind == MeasureKind::rms;
   }
   void give_pulses() { keeps_nodes_ = true; }
-  /// What the value is made of; false where an extreme is reached at two instants.
-  bool pulses(const MeasureResult& result, std::vector<ColumnPulse>& out) const;
+  /// What the value is made of; why not, as the end of a sentence about the measure, where it is made of more.
+  std::string_view pulses(const MeasureResult& result, std::vector<ColumnPulse>& out) const;
   /// The gradient that was found of them.
   void take_given(MeasureResult& result, const std::vector<double>& gradient) const;
   /// Whether it depends on what is between rows, single instants apart.
@@ -52,6 +53,9 @@ class MeasureSet::Account {
   void set_parameters(int parameters, bool instants_move) {
     parameters_ = static_cast<std::size_t>(parameters);
     instants_move_ = instants_move;
+  }
+  void know_accuracy(double part) {
+    for (Extreme& extreme : extremes_) extreme.know_accuracy(part);
   }
   void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionPiece& piece);
   void look_at_instants(const MotionSamples& samples, const MotionPiece& piece);
@@ -87,11 +91,12 @@ class MeasureSet::Account {
                                      : sample.derivative[column * parameters_ + p];
   }
   void give(MeasureResult& result, const MotionSample& sample) const;
-  bool path_pulses(double value, std::vector<ColumnPulse>& out) const;
+  void path_pulses(double value, std::vector<ColumnPulse>& out) const;
   /// What one column of a sample is made of.
   static void add_pulses(const MotionSample& sample, std::size_t column, double weight, std::vector<ColumnPulse>& out);
   void give_extreme(MeasureResult& result, const Extreme& extreme, double factor) const;
   void give_integral(MeasureResult& result) const;
+  void give_rms_gradient(MeasureResult& result, double value) const;
   void give_path(MeasureResult& result) const;
   void check_ties(MeasureResult& result, const Extreme& extreme) const;
 
@@ -103,8 +108,8 @@ class MeasureSet::Account {
   std::vector<Instant> instants_;
   std::optional<MotionSample> first_, last_;
   // Integrals of v and v^2 and of their gradients; of rows where there is no time: sums.
-  double sum_ = 0, squares_ = 0, duration_ = 0, size_ = 0;  // size_: the largest |v|
-  std::vector<double> sum_gradient_, squares_gradient_;
+  double sum_ = 0, squares_ = 0, duration_ = 0, size_ = 0;                // size_: the largest |v|
+  std::vector<double> sum_gradient_, squares_gradient_, squared_slopes_;  // the last: integrals of v_p^2
   std::optional<std::pair<double, double>> before_break_;  // the last breakpoint, and the column just before it
   std::int64_t rows_ = 0;
   struct Node {

@@ -39,6 +39,8 @@ double MeasureSet::Account::by_last_instant(const MeasureResult& result, const E
     case MeasureKind::mean:
       return end ? (end->sample.value[column_] - value) / duration_ : no_value;
     case MeasureKind::rms:
+      // What grows from zero adds |c'| T^-1/2 (dT)^3/2 / 3^1/2.
+      if (end && value == 0 && end->sample.value[column_] == 0) return 0;
       return end ? (std::pow(end->sample.value[column_], 2) - value * value) / (2 * value * duration_) : no_value;
     case MeasureKind::final:
       return end ? end->rate[column_] : no_value;

@@ -157,6 +157,10 @@ void MeasureSet::note_row(const MotionSample& sample, bool only_rows) {
   if (wants_samples_ && !only_rows) samples_->note_row(sample);
 }
 
+void MeasureSet::know_accuracy(double part) {
+  for (const auto& account : accounts_) account->know_accuracy(part);
+}
+
 void MeasureSet::give_pulses() {
   if (samples_) samples_->differentiate_later();
   for (const auto& account : accounts_) account->give_pulses();
@@ -167,8 +171,9 @@ std::optional<std::vector<std::vector<ColumnPulse>>> MeasureSet::pulses(std::str
   std::vector<std::vector<ColumnPulse>> pulses(accounts_.size());
   for (std::size_t k = 0; k < accounts_.size(); ++k) {
     const MeasureResult result = accounts_[k]->result({}, looked_);
-    if (accounts_[k]->pulses(result, pulses[k])) continue;
-    why = fmt::format("measure \"{}\" reaches its extreme at two instants", requests_[k].name);
+    const std::string_view more = accounts_[k]->pulses(result, pulses[k]);
+    if (more.empty()) continue;
+    why = fmt::format("measure \"{}\" {}", requests_[k].name, more);
     return all;
   }
   all = std::move(pulses);

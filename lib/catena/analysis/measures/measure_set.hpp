@@ -74,6 +74,9 @@ class MeasureSet {
   /// the run may end anywhere. `instants_move`: with the parameters, those at which measures look.
   void differentiate(int parameters, DifferentiateColumns derivatives, bool may_end = false,
                      bool instants_move = false);
+  /// Columns are known to this part of their size, if that is worse than rounding: extremes that differ by less may be
+  /// one or the other.
+  void know_accuracy(double part);
   /// After differentiate(): derivatives of columns are not at hand, pulses() are asked for instead. Columns are asked
   /// at every instant that may have one.
   void give_pulses();
@@ -100,7 +103,7 @@ class MeasureSet {
   std::vector<MeasureResult> results(const MovingInstants* moving = nullptr,
                                      const std::vector<std::vector<double>>* given = nullptr) const;
   /// Of every measure, as in results(), what it is made of; nothing, and `why` says it, where an extreme is reached at
-  /// two instants, which may have different gradients.
+  /// two instants, which may have different gradients, or the column of a root mean square is zero.
   std::optional<std::vector<std::vector<ColumnPulse>>> pulses(std::string& why) const;
 
  private:

@@ -45,6 +45,9 @@ class StateDerivatives {
   virtual bool find(const Snapshot& snapshot) = 0;
   /// A stretch of the motion that find() may ask about from now on, if the motion has a memory.
   virtual void cover(const MotionStretch& stretch) { static_cast<void>(stretch); }
+  /// Ends of the parts of the stretch covered last in which derivatives are smooth, that of the stretch the last one:
+  /// what is summed up over them is so part by part. Empty: all of it is smooth.
+  std::span<const double> part_ends() const { return part_ends_; }
   /// Who may see the stages of the motion's steps; nullptr: nobody needs to.
   virtual StageWatcher* stage_watcher() { return nullptr; }
   /// Why there are none; a sentence without full stop, empty where nothing went wrong so far.
@@ -87,6 +90,7 @@ class StateDerivatives {
   virtual void complete_state() {}
   /// Where a motion begins at an instant that moves: no derivatives by these parameters.
   void lack_derivatives(std::string why) { lack_ = std::move(why); }
+  void take_parts(std::vector<double> ends) { part_ends_ = std::move(ends); }
 
   /// A group of parameters: the mechanism with derivatives by them, and the state.
   struct Group {
@@ -130,6 +134,7 @@ class StateDerivatives {
   std::vector<Group> groups_;
   std::vector<double> jacobian_, f_, b_;
   std::vector<DesignScalar> values_;
+  std::vector<double> part_ends_;
   std::vector<double> before_, column_before_, column_after_;  // of derive(), kept for their memory
   double instant_ = std::numeric_limits<double>::quiet_NaN();
   MovingInstant at_instant_;  // what functions do there

@@ -14,6 +14,10 @@
 namespace catena {
 namespace {
 
+// What is summed up over a part of a stretch that is shorter than this part of it, or of t, makes no difference: that
+// of what grows like a power of time above 1 is 1e-6 of it, and rounding of instants is that of its limits.
+constexpr double least_part = 1e-6, least_part_of_instant = 1e-10;
+
 /// The unit of an integral over time of what has this unit; empty where that is not known.
 std::string times_second(const std::string& unit) {
   if (unit.empty()) return {};
@@ -115,8 +119,26 @@ bool AnalysisRows::proceed(double t) {
 
 bool AnalysisRows::cover(const MotionStretch& stretch) {
   if (derivatives_) derivatives_->cover(stretch);
-  measures_.cover(stretch);
+  if (derivatives_ && derivatives_->part_ends().size() > 1)
+    cover_parts(stretch, derivatives_->part_ends());
+  else
+    measures_.cover(stretch);
   return true;
+}
+
+// A stretch in which derivatives are smooth part by part.
+void AnalysisRows::cover_parts(const MotionStretch& stretch, std::span<const double> ends) {
+  const double least = std::max(least_part * (stretch.to - stretch.from), least_part_of_instant * std::abs(stretch.to));
+  MotionStretch part = stretch, last = stretch;
+  part.ended_by = -1;
+  part.ends_phase = false;
+  for (const double end : ends) {
+    if (!(end - part.from > least && stretch.to - end > least)) continue;
+    part.to = end;
+    measures_.cover(part);
+    last.from = part.from = end;
+  }
+  measures_.cover(last);
 }
 
 void AnalysisRows::look_since_last_row(const Snapshot& snapshot) {

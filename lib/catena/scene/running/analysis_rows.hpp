@@ -77,6 +77,7 @@ class AnalysisRows final : public RowObserver {
 
  private:
   void tell(double t) const;
+  void cover_parts(const MotionStretch& stretch, std::span<const double> ends);
   void draw(const Snapshot& snapshot) const;
   /// Between rows, in stretches of as many rows as the motion is smooth over.
   void look_since_last_row(const Snapshot& snapshot);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "catena/analysis/dynamics/dynamics_options.hpp"
 #include "catena/analysis/sensitivity/joint_jumps.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
@@ -79,6 +80,9 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
     }
   }
   measures_.differentiate(derivatives_->parameters(), std::move(columns), end_moves, instants_move);
+  // Motions are good to ten times their tolerance: which of two extremes is larger is not known better.
+  if (context_.task.type() == "dynamics")
+    measures_.know_accuracy(10 * context_.task.number("tolerance", DynamicsOptions{}.tolerance));
 }
 
 // The run ends where h(t, p) = value: dT/dp = -(h_p - value_p) / h'.

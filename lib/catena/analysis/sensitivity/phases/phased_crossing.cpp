@@ -201,6 +201,8 @@ void PhasedDerivatives::begin(const MotionPhase& phase) {
     equations_->hold(phase.released, phase.states);
     return;
   }
+  if (!parts_.empty()) go_to_part(phase.t);
+  parts_.clear();
   if (phase.t != to_) {
     not_shown(phase.t);
     return;
@@ -211,6 +213,7 @@ void PhasedDerivatives::begin(const MotionPhase& phase) {
     crossed_.reset();
   }
   const std::vector<double> rate = rates_of(phase);
+  crossing_rate_ = rate;
   note_landings(phase, rate);
   if (!cross(phase, rate)) return;
   from_ = to_;

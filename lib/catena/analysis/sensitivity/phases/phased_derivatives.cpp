@@ -209,14 +209,19 @@ void PhasedDerivatives::cover(const MotionStretch& stretch) {
     const std::vector<double> q(state->q.begin(), state->q.end()), qd(state->qd.begin(), state->qd.end());
     if (!start(stretch.from, q, qd)) return;
   }
+  if (!parts_.empty()) go_to_part(stretch.from);
   if (!take_values(stretch, stretch.from, &Track::end)) return;
-  for (Track& track : tracks_) track.begin = track.end;
-  from_ = stretch.from;
-  to_ = stretch.to;
-  has_.step = true;
-  has_.interpolant = false;
-  if (!make_step(to_ - from_) || !take_values(stretch, to_, &Track::end) || !project(to_, Side::before, &Track::end))
+  parts_.clear();
+  has_.step = false;
+  to_ = stretch.from;
+  take_parts(smooth_parts(stretch, power_places(contacts_, phase_.states, places_)));
+  if (part_ends().empty()) {
+    not_shown(stretch.to);
     return;
+  }
+  for (const double end : part_ends()) {
+    if (!cover_part(stretch, end)) return;
+  }
   found_.clear();
   if (stretch.ended_by >= 0) find_rates(stretch);
   const MovingInstant& instant = instant_at(to_);
@@ -252,7 +257,7 @@ bool PhasedDerivatives::find(const Snapshot& snapshot) {
     const std::vector<double> q(snapshot.q.begin(), snapshot.q.end()), qd(snapshot.qd.begin(), snapshot.qd.end());
     if (!start(snapshot.t, q, qd)) return false;
   }
-  if (snapshot.t < from_ || snapshot.t > to_) return not_shown(snapshot.t);
+  if (!go_to_part(snapshot.t)) return not_shown(snapshot.t);
   const bool inside = has_.step && snapshot.t != to_ && snapshot.t != from_;
   if (inside && !has_.interpolant) {
     if (!prepare_interpolant()) return false;

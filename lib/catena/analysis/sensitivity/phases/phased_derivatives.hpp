@@ -23,6 +23,7 @@
 
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/phases/phase_equations.hpp"
+#include "catena/analysis/sensitivity/phases/smooth_parts.hpp"
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
 
@@ -82,6 +83,9 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   bool factorize(double t, Side side, const DesignVector& y);
   bool slope(std::size_t group, double t, Side side, const DesignVector& y, DesignVector& out);
   bool make_step(double h);
+  // Steps in parts: phased_parts.cpp.
+  bool cover_part(const MotionStretch& stretch, double to);
+  bool go_to_part(double t);
   bool project(double t, Side side, DesignVector Track::*y);
   bool prepare_interpolant();
   /// Before the crossing there, if the step ends with one.
@@ -95,6 +99,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   std::optional<std::vector<double>> rate_of_event(const MotionStretch& stretch, const DesignEvent& event,
                                                    bool is_first);
   std::vector<double> rates_of(const MotionPhase& phase);
+  bool has_passed(const WatchedPlace& watched);
   void note_landings(const MotionPhase& phase, const std::vector<double>& rate);
   bool cross(const MotionPhase& phase, const std::vector<double>& rate);
   bool cross_functions();
@@ -129,7 +134,15 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
     bool phase = false, start = false, step = false, interpolant = false;
   } has_;
   double from_ = 0, to_ = 0, length_scale_ = 1;
-  std::optional<double> crossed_;  // where functions of time jumped last
+  /// Of the present step those parts (smooth_parts.hpp) that are not the one in from_, to_ and tracks_.
+  struct Part {
+    double from = 0, to = 0;
+    bool has_interpolant = false;
+    std::vector<Track> tracks;
+  };
+  std::vector<Part> parts_;
+  std::optional<double> crossed_;      // where functions of time jumped last
+  std::vector<double> crossing_rate_;  // of the last instant at which a phase ended
   // Of the end of the present phase, by the event or transition found there.
   std::map<int, std::vector<double>> found_;
   InstantRates phase_instants_;

@@ -117,6 +117,19 @@ void PhasedDerivatives::note_instant(InstantRates& instants, double t, const std
   if (!is_new) join(known->second, rate);
 }
 
+// Whether a place is beyond the end of its phase by more than rounding, before the phase has lasted: what put it there,
+// an impact, did so whatever the parameters are.
+bool PhasedDerivatives::has_passed(const WatchedPlace& watched) {
+  const DesignVector& y = tracks_.front().end;
+  if (!factorize(to_, Side::after, y) || !slope(0, to_, Side::after, y, stage_)) return false;
+  std::vector<double> qd(n_);
+  for (std::size_t c = 0; c < n_; ++c) qd[c] = y[n_ + c].v;
+  const double speed = fastest(evaluator(), qd), length = evaluator().length_scale();
+  const PlaceLaw law = equations_->law(places_[0][watched.place], watched.place);
+  return law.has_passed(equations_->motion(groups()[0].mechanism, watched.place), groups()[0].lambda, watched.ends,
+                        length, speed);
+}
+
 // How the instant moves at which this phase begins.
 std::vector<double> PhasedDerivatives::rates_of(const MotionPhase& phase) {
   std::vector<double> none(at(parameters()), 0.0), rate = none;
@@ -124,7 +137,12 @@ std::vector<double> PhasedDerivatives::rates_of(const MotionPhase& phase) {
   if (phase.ended_by >= 0 && at(phase.ended_by) < phase_.watched.size()) {
     const int number = static_cast<int>(events_.size()) + phase.ended_by;
     if (const auto found = found_.find(number); found != found_.end()) return found->second;
-    const auto own = rate_of_place(nullptr, phase_.watched[at(phase.ended_by)]);
+    const WatchedPlace& watched = phase_.watched[at(phase.ended_by)];
+    if (from_ == to_ && !crossing_rate_.empty() && has_passed(watched)) {
+      note_instant(*instants_, phase.t, crossing_rate_);
+      return crossing_rate_;
+    }
+    const auto own = rate_of_place(nullptr, watched);
     rate = own ? *own : std::vector<double>(none.size(), unknown);
     note_instant(*instants_, phase.t, rate);
     note_instant(phase_instants_, phase.t, rate);

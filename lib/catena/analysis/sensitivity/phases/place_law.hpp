@@ -36,6 +36,8 @@ struct PlaceLaw {
   }
 
   DesignScalar compliant_force(const PlaceMotion& motion) const;
+  /// The sizes of its terms together.
+  double compliant_size(const PlaceMotion& motion) const;
   /// Psi' / g'.
   DesignScalar row_factor(const DesignScalar& gap) const;
   /// Its derivative by the gap.
@@ -45,6 +47,9 @@ struct PlaceLaw {
   DesignScalar normal(const PlaceMotion& motion, std::span<const DesignScalar> lambda) const;
   /// What is zero where a phase of the place ends; see ContactPhases.
   DesignScalar end_value(const PlaceMotion& motion, std::span<const DesignScalar> lambda, PhaseEnd ends) const;
+  /// Whether the place is beyond that end by more than rounding; `length` of the mechanism, `speed`: its fastest.
+  bool has_passed(const PlaceMotion& motion, std::span<const DesignScalar> lambda, PhaseEnd ends, double length,
+                  double speed) const;
   /// Whether the gap alone is zero there.
   bool ends_by_gap(const PlaceMotion& motion, PhaseEnd ends) const;
 };

@@ -1,0 +1,106 @@
+// Measures whose derivatives are in doubt: root mean squares of columns that are zero, and extremes that are reached
+// several times. Where all that may count agrees there is a gradient; else none, and a reason.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "analysis/sanitized.hpp"
+#include "design/measured.hpp"
+#include "oracles/random_seeds.hpp"
+#include "oracles/scene_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+TextRun run_sensitivity_of(const std::string& scene, const std::string& parameters, const std::string& mode,
+                           const std::string& run, const std::string& measures) {
+  return run_text(R"({"catena": 1, )" + scene + R"(, "analyses": [{"type": "sensitivity", "mode": ")" + mode +
+                  R"(", "parameters": )" + parameters + R"(, "of": {)" + run + R"(, "measures": {)" + measures +
+                  "}}}]}");
+}
+
+// A floor that is not reached, a place that is not left: zero whatever h is.
+TEST(ZerosAndTies, RootMeanSquaresOfWhatStaysZero) {
+  for (const std::string mode : {"forward", "adjoint"}) {
+    const TextRun run = run_sensitivity_of(
+        R"("gravity": [0, -9.81], "parameters": {"h": 1.0, "u": 0.0},
+        "bodies": {"p": {"particle": true, "mass": 1, "position": [0, "h"], "velocity": ["u", 0]}},
+        "forces": [{"type": "contact", "name": "C", "i": "ground", "j": "p", "k": 100,
+                    "curve": {"line": {"point": [0, 0], "axis": [1, 0]}}}])",
+        R"(["h", "u"])", mode, R"("type": "dynamics", "until": "=0.1*h", "every": 0.1)",
+        R"("force": {"rms": "C.force"}, "x": {"rms": "p.x"}, "vx": {"rms": "p.vx"})");
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    EXPECT_EQ(value(run, "force"), 0);
+    EXPECT_EQ(gradient(run, "force", 0), 0);
+    EXPECT_EQ(gradient(run, "force", 1), 0);
+    EXPECT_EQ(gradient(run, "x", 0), 0);
+    // x = u t grows on both sides of u = 0.
+    EXPECT_TRUE(std::isnan(gradient(run, "x", 1)));
+    EXPECT_TRUE(std::isnan(gradient(run, "vx", 1)));
+    EXPECT_TRUE(warns(run, "a root mean square has a kink there"));
+  }
+}
+
+// rms of u t over T is |u| T / sqrt 3: beside the kink there is a derivative, however near.
+TEST(ZerosAndTies, RootMeanSquaresOfWhatIsNearlyZero) {
+  for (const double u : {1e-9, -1e-9}) {
+    const TextRun run = run_sensitivity_of(R"("parameters": {"u": )" + text_of(u) + R"(},
+        "bodies": {"p": {"particle": true, "mass": 1, "position": [0, 0], "velocity": ["u", 0]}})",
+                                           R"(["u"])", "forward", R"("type": "dynamics", "until": 0.3, "every": 0.1)",
+                                           R"("x": {"rms": "p.x"})");
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    EXPECT_NEAR(gradient(run, "x", 0), std::copysign(0.3 / std::sqrt(3.0), u), 1e-9);
+  }
+}
+
+// x = a cos(w t) + v / w sin(w t), w^2 = k / m: the same amplitude again and again, sqrt(a^2 + v^2 m / k), by which the
+// phase does not count.
+TEST(ZerosAndTies, ExtremesThatComeBack) {
+  expect_no_fault(1, size_of_test(8u, 2u), [](unsigned seed) -> std::string {
+    RandomNumbers random(seed);
+    const double a = random(0.1, 0.5), k = random(30, 80), m = random(0.5, 2), v = seed % 2 == 0 ? 0 : random(-1, 1);
+    const double amplitude = std::sqrt(a * a + v * v * m / k), w = std::sqrt(k / m);
+    const TextRun run = run_sensitivity_of(
+        R"("parameters": {"a": )" + text_of(a) + R"(, "k": )" + text_of(k) + R"(, "m": )" + text_of(m) + R"(, "v": )" +
+            text_of(v) +
+            R"(}, "bodies": {"b": {"particle": true, "mass": "m", "position": ["a", 0], "velocity": ["v", 0]}},
+        "constraints": [{"type": "absolute_y", "i": "b", "value": 0}],
+        "forces": [{"type": "spring_damper", "i": ["ground", [-2, 0]], "j": "b", "k": "k", "length": 2}])",
+        R"(["a", "k", "m", "v"])", seed % 4 < 2 ? "adjoint" : "forward",
+        R"("type": "dynamics", "tolerance": 1e-10, "every": 0.5, "until": )" + text_of(random(20, 30) / w),
+        R"("most": {"max": "b.x"}, "least": {"min": "b.x"}, "range": {"range": "b.x"}, "speed": {"max": "b.vx"})");
+    if (run.outcome.exit_code != 0) return run.outcome.error_text;
+    const std::array<double, 4> by{a / amplitude, -v * v * m / (k * k) / (2 * amplitude), v * v / k / (2 * amplitude),
+                                   v * m / k / amplitude};
+    const std::array<double, 4> w_by{0, w / (2 * k), -w / (2 * m), 0};
+    for (std::size_t p = 0; p < 4; ++p) {
+      const std::array<std::pair<const char*, double>, 4> expected{
+          {{"most", by[p]}, {"least", -by[p]}, {"range", 2 * by[p]}, {"speed", w * by[p] + w_by[p] * amplitude}}};
+      // Ten times the tolerance, of what the swing changes by with the parameter elsewhere: less than 30 a unit of it.
+      for (const auto& [name, slope] : expected) {
+        if (std::abs(gradient(run, name, p) - slope) <= 10 * 1e-10 * std::max(30.0, std::abs(slope))) continue;
+        return std::string(name) + " by " + std::to_string(p) + ": " + text_of(gradient(run, name, p)) + ", expected " +
+               text_of(slope) + " " + measure(run, name).trouble;
+      }
+    }
+    return {};
+  });
+}
+
+// max |x| of the same at v = 0 is reached at both ends of the swing, which move apart with the rest of the spring.
+TEST(ZerosAndTies, ExtremesThatMoveApart) {
+  const TextRun run = run_sensitivity_of(
+      R"("parameters": {"a": 0.2, "l": 2.0}, "bodies": {"b": {"particle": true, "mass": 1.3, "position": ["a", 0]}},
+      "constraints": [{"type": "absolute_y", "i": "b", "value": 0}],
+      "forces": [{"type": "spring_damper", "i": ["ground", [-2, 0]], "j": "b", "k": 50, "length": "l"}])",
+      R"(["a", "l"])", "forward", R"("type": "dynamics", "tolerance": 1e-10, "until": 1.5, "every": 0.5)",
+      R"("away": {"max": "=b.x^2"})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(gradient(run, "away", 0), 0.4, 1e-8);
+  EXPECT_TRUE(std::isnan(gradient(run, "away", 1)));
+  EXPECT_TRUE(warns(run, "with different derivatives"));
+}
+
+}  // namespace
+}  // namespace catena::testing
