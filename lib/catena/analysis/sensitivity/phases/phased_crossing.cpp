@@ -108,11 +108,12 @@ void PhasedDerivatives::move_along(DesignVector& y, const DesignVector& slope, s
   }
 }
 
-// An instant that is not known matters only where the motion jumps or bends.
+// An instant that is not known matters only where the motion jumps, or bends: accelerations do, whose size that of
+// velocities says nothing of.
 void PhasedDerivatives::end_crossing(std::size_t k, const std::vector<double>& rate, const DesignVector& slope_before,
                                      bool jumps) {
   double change = 0, size = 0;
-  for (std::size_t i = 0; i < stage_.size(); ++i) {
+  for (std::size_t i = n_; i < stage_.size(); ++i) {
     change = std::max(change, std::abs(stage_[i].v - slope_before[i].v));
     size = std::max({size, std::abs(stage_[i].v), std::abs(slope_before[i].v)});
   }
