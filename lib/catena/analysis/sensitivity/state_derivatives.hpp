@@ -45,6 +45,8 @@ class StateDerivatives {
   virtual bool find(const Snapshot& snapshot) = 0;
   /// A stretch of the motion that find() may ask about from now on, if the motion has a memory.
   virtual void cover(const MotionStretch& stretch) { static_cast<void>(stretch); }
+  /// There are none from now on, for this reason.
+  void give_up(std::string why) { fail(std::move(why)); }
   /// Ends of the parts of the stretch covered last in which derivatives are smooth, that of the stretch the last one:
   /// what is summed up over them is so part by part. Empty: all of it is smooth.
   std::span<const double> part_ends() const { return part_ends_; }

@@ -55,6 +55,7 @@ AnalysisRows::AnalysisRows(const ColumnSet& columns, AnalysisContext& context, c
     : columns_(columns),
       context_(context),
       measures_(requests_of(context), model, plan, sources, run),
+      cables_(model),
       sources_(sources),
       info_(columns.info().begin(), columns.info().end()),
       timed_(sources.timed),
@@ -118,6 +119,9 @@ bool AnalysisRows::proceed(double t) {
 }
 
 bool AnalysisRows::cover(const MotionStretch& stretch) {
+  if (derivatives_ && derivatives_->why().empty()) {
+    if (std::string kink = cables_.passed(stretch); !kink.empty()) derivatives_->give_up(std::move(kink));
+  }
   if (derivatives_) derivatives_->cover(stretch);
   if (derivatives_ && derivatives_->part_ends().size() > 1)
     cover_parts(stretch, derivatives_->part_ends());

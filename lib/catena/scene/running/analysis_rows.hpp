@@ -11,6 +11,7 @@
 #include "catena/analysis/motion/stage_watcher.hpp"
 #include "catena/analysis/run/row_accuracy.hpp"
 #include "catena/analysis/run/row_observer.hpp"
+#include "catena/analysis/sensitivity/phases/cable_kinks.hpp"
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
 #include "catena/results/analysis_result.hpp"
 #include "catena/scene/judging/gap_watch.hpp"
@@ -98,6 +99,7 @@ class AnalysisRows final : public RowObserver {
   MeasureSet measures_;
   std::unique_ptr<StateDerivatives> derivatives_;
   MeasureAdjoint* back_ = nullptr;  // the same, where they go back
+  CableKinks cables_;
   std::function<Look(const Snapshot&)> make_look_;
   Look look_;
   Drawn drawn_;
