@@ -8,8 +8,8 @@
 set -euo pipefail
 root="$(cd "$1" && pwd)"
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
-most_thresholds=507
-most_bounds=180
+most_thresholds=524
+most_bounds=187
 most_unexplained=12
 
 cd "$root"

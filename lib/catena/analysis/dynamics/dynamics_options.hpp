@@ -27,6 +27,12 @@ inline std::string_view to_string(IntegrationMethod method) {
   return integration_methods[static_cast<std::size_t>(method)];
 }
 
+/// Whether a tolerance makes a method as exact as it asks for, in steps that are not many times those of others: not of
+/// order 2.
+inline bool follows_tolerance(IntegrationMethod method) {
+  return method != IntegrationMethod::alpha && method != IntegrationMethod::rattle;
+}
+
 struct DynamicsOptions {
   /// The least tolerance that double precision allows.
   static constexpr double least_tolerance = 1e-14;

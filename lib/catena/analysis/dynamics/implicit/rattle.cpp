@@ -12,7 +12,7 @@ namespace {
 // Of searches for places with the factors of the beginning: each takes a digit or more where a step is of use at all.
 constexpr int most_corrections = 50;
 // Of repetitions for velocities, which gain at least a factor of two each where a step is of use.
-constexpr int most_repetitions = 60;
+constexpr int most_rounds = 60;
 // A rest of a step that is longer by this part is rounding of time.
 constexpr double rounding_of_time = 1e-9;
 
@@ -86,7 +86,7 @@ bool Rattle::find_velocities(double h) {
   const std::size_t n = motion_.coordinates();
   const std::span<double> v = motion_.qd(std::span(y_new_));
   std::copy(half_.begin(), half_.end(), v.begin());
-  for (int k = 0; k < most_repetitions; ++k) {
+  for (int k = 0; k < most_rounds; ++k) {
     if (!motion_.derivative(t_new_, Side::before, y_new_, slope_)) return false;
     double change = 0, size = 0;
     std::vector<double>& last = y_before_;  // is overwritten at the end of the step
