@@ -8,7 +8,7 @@
 set -euo pipefail
 root="$(cd "$1" && pwd)"
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
-most_thresholds=524
+most_thresholds=526
 most_bounds=187
 most_unexplained=12
 

@@ -225,8 +225,8 @@ TEST(ContactMotion, FrictionPassesTheKnotsOfASpline) {
 TEST(ContactMotion, FrictionGoesOnBeyondTheEndOfASpline) {
   const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"b": {"particle": true, "mass": 1.5,
     "position": [-0.5, 0.3], "velocity": [0.3, -0.2]}}, "forces": [{"type": "contact", "name": "f", "i": "ground", "j": "b",
-    "mu": 0.1, "curve": {"spline": {"points": [[-1, 0.5], [-0.5, 0.3], [0, 0.05], [0.3, -0.2]], "end": "natural"},
-    "beyond": "line"}}], "outputs": ["b", "f.slip", "f.force"], )" +
+    "mu": 0.1, "curve": {"spline": {"points": [[-1, 0.5], [-0.5, 0.3], [0, 0.05], [0.3, -0.2]], "end": "natural",
+    "beyond": "line"}}}], "outputs": ["b", "f.slip", "f.force"], )" +
                                dynamics({0.7, 0.8, 0.9}));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
   for (std::size_t k = 0; k < 3; ++k) {

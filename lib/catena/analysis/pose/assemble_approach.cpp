@@ -54,6 +54,9 @@ constexpr double left_on_crossing = 1e-3;
 // eight halvings determine it to rounding.
 constexpr double way_to_crossing = 0.03;
 constexpr int halvings_to_crossing = 8, corrections_on_crossing = 2;
+// Of steps that halve, each is more than this part of the one before; where equations are independent the third and
+// later ones are rounding.
+constexpr double halves = 0.3;
 
 }  // namespace
 
@@ -154,7 +157,8 @@ int Assembler::element_out_of_range(std::span<const double> q) {
 //
 //   x_k = x* + a 2^-k + b 4^-k + ...        x_k^(m) = x_k+1^(m-1) + (x_k+1^(m-1) - x_k^(m-1)) / (2^m - 1)
 //
-// has x*, as far as terms go (Neville). q is left where it is if that meets the equations no better.
+// has x*, as far as terms go (Neville). q is left where it is if steps do not halve, or x* meets the equations no
+// better.
 void Assembler::land_on_crossing(std::span<double> q) {
   const double now = merit(q);
   const std::vector<CurvePlace> places = evaluator_.curve_places();
@@ -167,8 +171,10 @@ void Assembler::land_on_crossing(std::span<double> q) {
   std::vector<std::vector<double>> x(halvings_to_crossing, std::vector<double>(q.size()));
   bool found = now > 0 && find_step() && extent(step_) > 0;
   if (found) advance(q, way_to_crossing / extent(step_), trial_);
+  double before = 0;
   for (std::size_t k = 0; found && k < x.size(); ++k) {
-    found = std::isfinite(merit(trial_)) && find_step();
+    found = std::isfinite(merit(trial_)) && find_step() && extent(step_) > halves * before;
+    before = extent(step_);
     advance(trial_, -1, x[k]);
     trial_ = x[k];
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
@@ -22,7 +23,7 @@ constexpr int most_trials = 100;
 Alpha::Alpha(Motion motion, const AlphaOptions& options) : motion_(motion), options_(options), matrix_(motion) {
   for (auto* y : {&y_, &y_before_, &y_new_, &slope_, &slope_new_, &slope_before_}) y->assign(motion_.size(), 0.0);
   own_.assign(motion_.coordinates(), 0.0);
-  own_new_ = own_;
+  own_new_ = shifted_ = own_;
   residual_.assign(2 * motion_.coordinates(), 0.0);
   am_ = (2 * options.rho - 1) / (options.rho + 1);
   af_ = options.rho / (options.rho + 1);
@@ -92,8 +93,8 @@ bool Alpha::advance(double limit) {
 void Alpha::place(double h) {
   const std::size_t n = motion_.coordinates();
   for (std::size_t c = 0; c < n; ++c) {
-    y_new_[c] = y_[c] + h * (y_[n + c] + h * ((0.5 - b_) * own_[c] + b_ * own_new_[c]));
-    y_new_[n + c] = y_[n + c] + h * ((1 - g_) * own_[c] + g_ * own_new_[c]);
+    y_new_[c] = y_[c] + h * (y_[n + c] + h * ((0.5 - b_) * shifted_[c] + b_ * own_new_[c]));
+    y_new_[n + c] = y_[n + c] + h * ((1 - g_) * shifted_[c] + g_ * own_new_[c]);
   }
 }
 
@@ -106,7 +107,10 @@ bool Alpha::solve(double h) {
   }
   if (factored_h_ != h && !matrix_.factorize(std::sqrt((1 - am_) / ((1 - af_) * b_)) / h)) return false;
   factored_h_ = h;
-  std::copy(own_.begin(), own_.end(), own_new_.begin());
+  // A follows a by a part of the step: of another length, by the same part of that (Bruels and Arnold 2008).
+  const double ratio = last_h_ > 0 ? h / last_h_ : 1;
+  for (std::size_t c = 0; c < n; ++c) shifted_[c] = slope_[n + c] + ratio * (own_[c] - slope_[n + c]);
+  std::copy(shifted_.begin(), shifted_.end(), own_new_.begin());
   double before = std::numeric_limits<double>::infinity();
   const int most = options_.fixed_step > 0 ? most_repetitions : usual_repetitions;
   for (int k = 0; k < most; ++k) {
@@ -115,14 +119,24 @@ bool Alpha::solve(double h) {
     for (std::size_t c = 0; c < n; ++c) {
       residual_[c] = 0;
       residual_[n + c] =
-          slope_new_[n + c] + (af_ * slope_[n + c] - (1 - am_) * own_new_[c] - am_ * own_[c]) / (1 - af_);
+          slope_new_[n + c] + (af_ * slope_[n + c] - (1 - am_) * own_new_[c] - am_ * shifted_[c]) / (1 - af_);
     }
     matrix_.solve(residual_);
-    for (std::size_t c = 0; c < n; ++c) residual_[c] /= b_ * h * h;
-    for (std::size_t c = 0; c < n; ++c) own_new_[c] += residual_[c];
+    double largest = 0, largest_change = 0;
+    for (std::size_t c = 0; c < n; ++c) {
+      residual_[c] /= b_ * h * h;
+      own_new_[c] += residual_[c];
+      const double unit = c % 3 == 2 ? 1 : scale_.length;
+      largest = std::max(largest, std::abs(own_new_[c]) / unit);
+      largest_change = std::max(largest_change, std::abs(residual_[c]) / unit);
+    }
     const double change = size_of(std::span(residual_).first(n), h, b_ * h * h, g_ * h, unsolved);
     if (!std::isfinite(change)) return false;
-    if (change <= 1) {
+    // Of vibrations that have died away rounding is left: of places, and corrections that no longer become smaller.
+    const bool stalls = change > thresholds::least_gain * before;
+    const bool is_rounding = b_ * h * h * largest_change <= thresholds::position_rounding ||
+                             (stalls && largest_change <= thresholds::same_value * largest);
+    if (change <= 1 || is_rounding) {
       place(h);
       return true;
     }
@@ -154,7 +168,7 @@ double Alpha::size_of(std::span<const double> change, double h, double of_place,
 double Alpha::error_of_step(double h) {
   const std::size_t n = motion_.coordinates();
   const std::span<double> change = std::span(residual_).first(n);
-  for (std::size_t c = 0; c < n; ++c) change[c] = own_new_[c] - own_[c];
+  for (std::size_t c = 0; c < n; ++c) change[c] = own_new_[c] - shifted_[c];
   const double of_place = size_of(change, h, h * h * std::abs(b_ - 1.0 / 6), 0, 1);
   const double ratio = last_h_ > 0 ? h / last_h_ : 0;
   for (std::size_t c = 0; c < n; ++c)

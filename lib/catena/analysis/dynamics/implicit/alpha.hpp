@@ -10,9 +10,9 @@
 // damping has the coefficient mu in place of g/(b h), which differs by 6 % at most. q1 and v1 are projected onto the
 // constraints.
 //
-// Error of a step: h^2 |b - 1/6| (A1 - A0) of places, h/12 of the second difference of a of velocities. Source: J.
-// Chung, G. Hulbert, J. Appl. Mech. 60 (1993); M. Arnold, O. Bruels, Multibody Syst. Dyn. 18 (2007) for constrained
-// motions.
+// Of a vibration with h omega >> 1 all three roots are -rho. Error of a step: h^2 |b - 1/6| (A1 - A0) of places, h/12
+// of the second difference of a of velocities. Source: J. Chung, G. Hulbert, J. Appl. Mech. 60 (1993); M. Arnold, O.
+// Bruels, Multibody Syst. Dyn. 18 (2007) for constrained motions.
 #pragma once
 
 #include <limits>
@@ -68,7 +68,8 @@ class Alpha final : public Integrator {
   double h_ = 0, t_new_ = 0, last_h_ = 0, factored_h_ = 0;
   bool linearized_ = false;
   std::vector<double> y_before_, y_new_, slope_, slope_new_, slope_before_;
-  std::vector<double> own_, own_new_, residual_;  // A; [0, r_v] for the matrix
+  std::vector<double> own_, shifted_, own_new_;  // A; the same for the length of the step that is tried
+  std::vector<double> residual_;                 // [0, r_v] for the matrix
 };
 
 }  // namespace catena

@@ -138,15 +138,20 @@ void ImplicitMatrix::add_differences(double t, Side side, std::span<const double
   const double length = evaluator.length_scale();
   const std::span<double> q = std::span(moved_).first(n), qd = std::span(moved_).subspan(n);
   std::copy(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(2 * n), moved_.begin());
-  double speed = 0;
-  for (std::size_t c = 0; c < n; ++c) speed = std::max(speed, std::abs(qd[c]) / (c % 3 == 2 ? 1 : length));
-  if (speed == 0) speed = 1;
   const auto unit = [&](int coordinate) { return coordinate % 3 == 2 ? 1 : length; };
   const auto velocity_loads = [&](std::vector<double>& loads) {
     evaluator.applied_forces(qd, loads);
     if (contacts) contacts->add(qd, loads);
   };
   velocity_loads(loads_);
+  // Beside speeds that have become small rounding of the loads would count: those that they make over a length do.
+  const std::span<const double> mass = motion_.equations().masses().mass;
+  double speed = 0;
+  for (std::size_t c = 0; c < mass.size(); ++c) {
+    const double by = unit(static_cast<int>(c)), acceleration = mass[c] > 0 ? std::abs(loads_[c]) / (mass[c] * by) : 0;
+    speed = std::max({speed, std::abs(qd[c]) / by, std::sqrt(acceleration)});
+  }
+  if (speed == 0) speed = 1;
   // -dQ of the group's columns, which differ in their units: each row is reached by one of them.
   const SparsePattern& pattern = tangent_.pattern();
   const auto divide = [&](const std::vector<int>& group, double difference) {
