@@ -55,6 +55,11 @@ void LaneMotion::make_own(LaneState*& state) {
 
 bool LaneMotion::set_design(int lane, const Model& model, double length_scale) {
   bool finite = solver_.set_design(lane, model, length_scale);
+  // Lengths of curves belong to the design.
+  if (!solver_.searches().empty()) {
+    while (jumps_.size() <= at(lane)) jumps_.emplace_back(model);
+    jumps_[at(lane)] = ContactJumps(model);
+  }
   for (int b = 0; b < coordinates_ / 3; ++b) {
     const Frame<double> pose = solver_.program().given_pose(model, b);
     now_->q[3 * b][lane] = pose.x;
@@ -154,12 +159,32 @@ unsigned LaneMotion::attempt(unsigned lanes, const std::array<double, lane_count
   }
   next_->places.copy(now_->places);
   solver_.solve(*next_);
-  return hopeful & solver_.judge(*now_, *next_, rules);
+  return steady_contacts(hopeful & solver_.judge(*now_, *next_, rules));
+}
+
+// Those of these lanes whose places of contact go the way that the step before foretells: of a jump they do not,
+// however short the step is, and the lane leaves the group. Nothing foretells the first step.
+unsigned LaneMotion::steady_contacts(unsigned lanes) {
+  if (solver_.searches().empty()) return lanes;
+  unsigned steady = lanes;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (!(lanes & 1U << lane) || !has_before_[at(lane)]) continue;
+    solver_.searches().show_places(now_->places, lane, places_);
+    solver_.searches().show_places(next_->places, lane, nexts_);
+    if (jumps_[at(lane)].may_jump(places_, nexts_, next_->t[at(lane)] - now_->t[at(lane)])) steady &= ~(1U << lane);
+  }
+  return steady;
 }
 
 // The ends of their steps are where these lanes are now.
 void LaneMotion::take(unsigned lanes) {
   if (lanes == 0) return;
+  for (int lane = 0; lane < lane_count && !solver_.searches().empty(); ++lane) {
+    if (!(lanes & 1U << lane)) continue;
+    solver_.searches().show_places(now_->places, lane, places_);
+    solver_.searches().show_places(next_->places, lane, nexts_);
+    jumps_[at(lane)].accept(places_, nexts_, next_->t[at(lane)] - now_->t[at(lane)]);
+  }
   if (lanes == alive_) {
     before_ = std::exchange(now_, next_);
     next_ = free_state();

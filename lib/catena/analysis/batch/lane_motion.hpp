@@ -2,10 +2,10 @@
 //
 // Every lane steps from one of its rows to the next under the rules by which Kinematics accepts a step
 // (kinematics/kinematics_march.cpp): the prediction was close, Newton contracted well, no body turned far, and no
-// block's determinant changed its sign or fell towards zero. A lane that breaks one halves its own step while the
-// others wait; one that cannot go on, or comes so near to a singular position that more is needed than a step, leaves
-// the group with the reason, and nothing of the others changes. Such designs are for Kinematics itself. Allocates when
-// it is made, and where a group has more rows than any before.
+// block's determinant changed its sign or fell towards zero; and places of contact went on as they did before. A lane
+// that breaks one halves its own step while the others wait; one that cannot go on, or comes so near to a singular
+// position that more is needed than a step, leaves the group with the reason, and nothing of the others changes. Such
+// designs are for Kinematics itself. Allocates when it is made, and where a group has more rows than any before.
 #pragma once
 
 #include <array>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "catena/analysis/batch/lane_solver.hpp"
+#include "catena/analysis/kinematics/course/contact_jumps.hpp"
 
 namespace catena {
 
@@ -80,6 +81,7 @@ class LaneMotion {
   void advance(unsigned lanes, const std::array<double, lane_count>& t, int depth);
   unsigned attempt(unsigned lanes, const std::array<double, lane_count>& t);
   void take(unsigned lanes);
+  unsigned steady_contacts(unsigned lanes);
   void leave(unsigned lanes, const char* why);
   void watch_margins();
   void keep_row();
@@ -97,6 +99,8 @@ class LaneMotion {
   LaneState *before_ = nullptr, *now_ = nullptr, *next_ = nullptr, *row_ = nullptr;
   std::array<bool, lane_count> has_before_{};
   std::array<std::string, lane_count> why_;
+  std::vector<ContactJumps> jumps_;         // one a lane, where contacts are searched for
+  std::vector<CurvePlace> places_, nexts_;  // of a lane
   unsigned alive_ = 0;
 };
 
