@@ -47,5 +47,23 @@ TEST(CableGradients, OfOneThatBecomesTautAreNotGiven) {
   }
 }
 
+// The same weight on a rope over a pulley, whose other end is held: 0.7 m hang below the pulley where it is taut.
+TEST(CableGradients, OfARopeOverAPulleyThatBecomesTautAreNotGiven) {
+  for (const double y : {-0.3, -0.72}) {
+    const TextRun run = run_text(
+        R"({"catena": 1, "gravity": [0, -9.81], "parameters": {"k": 800, "l": 1.0}, "bodies": {
+        "b": {"particle": true, "mass": 1.3, "position": [0.1, )" +
+        text_of(y) +
+        R"(], "velocity": [0, 0.05]}}, "constraints": [{"type": "absolute_x", "i": "b", "value": 0.1}],
+        "forces": [{"type": "rope", "name": "r", "i": ["ground", [-0.1, -0.2]],
+          "over": [{"at": ["ground", [0, 0]], "radius": 0.1, "side": -1}], "j": "b", "length": "=0.9 + 0.1*pi", "k": "k"}],
+        "analyses": [{"type": "sensitivity", "parameters": ["k"], "of": {"type": "dynamics", "until": 0.5,
+          "tolerance": 1e-11, "measures": {"y": {"final": "b.y"}}}}]})");
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    EXPECT_EQ(std::isnan(gradient(run, "y", 0)), y > -0.5) << ::testing::PrintToString(run.analysis().report.warnings);
+    EXPECT_EQ(warns(run, "rope \"r\" has become taut"), y > -0.5);
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

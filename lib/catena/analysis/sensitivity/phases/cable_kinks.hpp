@@ -1,4 +1,5 @@
-// Elastic cables that become taut or slack in a motion: there f = k max(l - L, 0) has a kink, and its derivative
+// Elastic cables, and ropes over pulleys, that become taut or slack in a motion: there f = k max(l - L, 0) has a kink,
+// and its derivative
 //
 //   f_p = k (l_p - L_p) where l > L, else 0
 //
@@ -22,7 +23,7 @@ class CableKinks {
   std::string passed(const MotionStretch& stretch);
 
  private:
-  std::vector<int> side_;  // by cable: 1 slack, -1 taut, 0 not known yet
+  std::vector<int> side_;  // by cable, then by rope: 1 slack, -1 taut, 0 not known yet
 };
 
 }  // namespace catena
