@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -165,6 +166,31 @@ TEST(ContactMotion, StopsLetGo) {
     EXPECT_NEAR(instants(run, "release")[0], leave, 1e-9);
     EXPECT_NEAR(run.first("bed.force"), mass * earth_gravity / 2, 1e-9);
     EXPECT_NEAR(run.last("ball.y"), rate / mass * std::pow(later, 3) / 6, 1e-9);
+  }
+}
+
+// The end of a crank gives way in one direction alone: it comes back with e times its speed, whatever friction would
+// rather stop, and slips back with it.
+TEST(ContactMotion, TheEndOfACrankComesBackInSpiteOfFriction) {
+  std::mt19937 engine(4);
+  const auto random = [&](double from, double to) { return std::uniform_real_distribution(from, to)(engine); };
+  for (int n = 0; n < 20; ++n) {
+    SCOPED_TRACE(n);
+    const double e = random(0.4, 0.9), mu = random(0.05, 0.6), w0 = random(1, 3), depth = random(0.05, 0.3);
+    const double inertia = 0.02 + 0.2 * 0.2;
+    const double speed2 = w0 * w0 + 2 * earth_gravity * 0.2 * (depth / 0.4) / inertia;
+    const TextRun run = run_text(
+        R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"p": {"mass": 1, "inertia": 0.02, "position": [0.2, 0],
+          "angular_velocity": )" +
+        text_of(-w0) + R"(, "points": {"o": [-0.2, 0], "e": [0.2, 0]}}},
+        "constraints": [{"type": "revolute", "i": "ground", "j": "p.o"}],
+        "forces": [{"type": "contact", "name": "C", "i": "ground", "j": "p.e", "mu": )" +
+        text_of(mu) + R"(, "restitution": )" + text_of(e) + R"(, "curve": {"line": {"point": [0, )" + text_of(-depth) +
+        R"(], "axis": [1, 0]}}}], "outputs": ["energy.total", "C.gap"],)" + dynamics({0, depth / 0.4 / w0 + 0.01}));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    ASSERT_EQ(instants(run, "impact").size(), 1u);
+    const double lost = inertia * speed2 * (1 - e * e) / 2;
+    EXPECT_NEAR(run.first("energy.total") - run.last("energy.total"), lost, 1e-9 * (1 + lost));
   }
 }
 

@@ -65,7 +65,11 @@ bool ContactProblem::solve_place(std::size_t k) {
     const bool regular = determinant > 1e-14 * D(n, n) * D(t, t);
     const double press = regular ? (-w_n * D(t, t) + w_t * D(n, t)) / determinant : -w_n / D(n, n);
     const double along = regular ? (-w_t * D(n, n) + w_n * D(t, n)) / determinant : 0;
-    if (press >= 0 && std::abs(along) <= p.mu_static * press) {
+    // Where the place gives way in one direction alone, as at the end of a crank, a rebound comes with a slip.
+    const double slip = w_t + D(t, n) * press;
+    const bool stops = regular || !(D(t, t) > 0) ||
+                       std::abs(slip) <= rounding_of_sums * (std::abs(w_t) + std::abs(D(t, n)) * press);
+    if (stops && press >= 0 && std::abs(along) <= p.mu_static * press) {
       state[k] = State::sticks;
       x[n] = press;
       x[t] = along;
