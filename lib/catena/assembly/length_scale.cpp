@@ -84,7 +84,8 @@ double dimension(const E& element, const Field& field) {
 // The gap of an element as it is given; 0 where it is closed, an angle, or told by no pair of points.
 template <class E>
 double given_gap(const Model& model, const ElementEntry<E, double>& entry) {
-  const auto [i, j] = given_frames<E>(model, entry.i, entry.j);
+  const auto frames = given_frames<E>(model, entry.i, entry.j);
+  const auto &i = frames.first, &j = frames.second;
   double gap = 0, from = 0;
   if constexpr (SearchesCurve<E>) {
     const CurvePlace place = entry.element.place();

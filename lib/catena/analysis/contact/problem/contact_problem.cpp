@@ -67,8 +67,8 @@ bool ContactProblem::solve_place(std::size_t k) {
     const double along = regular ? (-w_t * D(n, n) + w_n * D(t, n)) / determinant : 0;
     // Where the place gives way in one direction alone, as at the end of a crank, a rebound comes with a slip.
     const double slip = w_t + D(t, n) * press;
-    const bool stops = regular || !(D(t, t) > 0) ||
-                       std::abs(slip) <= rounding_of_sums * (std::abs(w_t) + std::abs(D(t, n)) * press);
+    const bool stops =
+        regular || !(D(t, t) > 0) || std::abs(slip) <= rounding_of_sums * (std::abs(w_t) + std::abs(D(t, n)) * press);
     if (stops && press >= 0 && std::abs(along) <= p.mu_static * press) {
       state[k] = State::sticks;
       x[n] = press;
