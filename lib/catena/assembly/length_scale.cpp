@@ -85,7 +85,7 @@ double dimension(const E& element, const Field& field) {
 template <class E>
 double given_gap(const Model& model, const ElementEntry<E, double>& entry) {
   const auto frames = given_frames<E>(model, entry.i, entry.j);
-  const auto &i = frames.first, &j = frames.second;
+  const auto &i = frames[0], &j = frames[1];
   double gap = 0, from = 0;
   if constexpr (SearchesCurve<E>) {
     const CurvePlace place = entry.element.place();
