@@ -14,8 +14,8 @@
 namespace catena {
 namespace {
 
-// A trial costs as much as some 700 explicit steps: beside twice as many after each that is lost, a part of the run that
-// falls.
+// A trial costs as much as some 700 explicit steps: beside twice as many after each that is lost, a part of the run
+// that falls.
 constexpr std::int64_t steps_between_looks = 500;
 // Order 8 takes 30 steps in 1 / rate at a tolerance of 1e-12, the calibrated motions of tests/oracles among them.
 constexpr double many = 200;
