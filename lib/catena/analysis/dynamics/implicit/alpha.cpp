@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+#include "catena/analysis/dynamics/implicit/implicit_step.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
@@ -49,11 +49,7 @@ bool Alpha::start(double t, std::span<const double> y) {
   return true;
 }
 
-void Alpha::observe(double h) {
-  const std::span<const double> y(y_), k(slope_);
-  scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
-                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
-}
+void Alpha::observe(double h) { implicit_step::observe(motion_, scale_, t_, h, y_, slope_); }
 
 bool Alpha::advance(double limit) {
   const bool fixed = options_.fixed_step > 0;
@@ -82,9 +78,14 @@ bool Alpha::advance(double limit) {
       h_ = h * std::clamp(cautious / std::cbrt(error), shortest, cautious);
       continue;
     }
-    if (!finish()) return false;
-    accept(h, error);
-    return true;
+    if (finish()) {
+      accept(h, error);
+      return true;
+    }
+    ++evaluator.counters.rejected;
+    culprit_ = -1;
+    if (fixed) return false;
+    h_ = h / 2;
   }
   return false;
 }
@@ -150,13 +151,11 @@ bool Alpha::solve(double h) {
 // error and of what rounding makes of it.
 double Alpha::size_of(std::span<const double> change, double h, double of_place, double of_velocity, double part) {
   const std::size_t n = motion_.coordinates();
-  const auto unit = [part](double of_tolerance, double of_both) { return of_both - (1 - part) * of_tolerance; };
   double largest = 0;
   for (std::size_t c = 0; c < motion_.moving(); ++c) {
-    const double speed = y_[n + c];
-    const double v_unit = unit(scale_.velocity_unit(c, 0, speed), scale_.velocity_unit(c, h, speed));
-    const double q_unit = unit(scale_.position_unit(c, 0), scale_.position_unit(c, h));
-    const double size = std::abs(change[c]) * std::max(v_unit > 0 ? of_velocity / v_unit : 0, of_place / q_unit);
+    const auto unit = implicit_step::units(scale_, c, h, y_[n + c], part);
+    const double of_v = unit.velocity > 0 ? of_velocity / unit.velocity : 0;
+    const double size = std::abs(change[c]) * std::max(of_v, of_place / unit.place);
     if (!(size <= largest)) {
       largest = size;
       culprit_ = static_cast<int>(c);
@@ -178,14 +177,8 @@ double Alpha::error_of_step(double h) {
 
 // Takes the end of the step to the constraints and evaluates there.
 bool Alpha::finish() {
-  EquationsOfMotion& equations = motion_.equations();
-  if (equations.plan().rows > 0) {
-    if (!equations.factorize(t_new_, Side::before, motion_.q(std::span<const double>(y_new_)))) return false;
-    position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
-    if (!(position_residual_ < RungeKutta::largest_residual)) return false;
-    equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
-  }
-  return motion_.derivative(t_new_, Side::before, y_new_, slope_new_);
+  return implicit_step::project_end(motion_, t_new_, scale_.rate(), y_new_, position_residual_) &&
+         motion_.derivative(t_new_, Side::before, y_new_, slope_new_);
 }
 
 void Alpha::accept(double h, double error) {
@@ -212,13 +205,7 @@ void Alpha::accept(double h, double error) {
 }
 
 void Alpha::interpolate(double t, std::span<double> y) {
-  const std::size_t n = motion_.coordinates();
-  const double h = t_ - t_before_, s = (t - t_before_) / h;
-  const double end = s * s * (3 - 2 * s), slope0 = h * s * (1 - s) * (1 - s), slope1 = -h * s * s * (1 - s);
-  for (std::size_t k = 0; k < y.size(); ++k) {
-    const double k0 = k < n ? y_before_[n + k] : slope_before_[k], k1 = k < n ? y_[n + k] : slope_[k];
-    y[k] = (1 - end) * y_before_[k] + end * y_[k] + slope0 * k0 + slope1 * k1;
-  }
+  implicit_step::interpolate({t_before_, t_, y_before_, y_, slope_before_, slope_}, t, motion_.coordinates(), y);
 }
 
 IntegratorMemory Alpha::memory() const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/dynamics/implicit/implicit_step.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
@@ -55,10 +56,12 @@ void Radau::forget() {
 }
 
 void Radau::observe(double h) {
-  const std::span<const double> y(y_), k(slope_);
+  implicit_step::observe(motion_, scale_, t_, h, y_, slope_);
+  remember_ratio();
+}
+
+void Radau::remember_ratio() {
   const double ratio = motion_.equations().smallest_pivot_ratio();
-  scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
-                 motion_.equations().applied_forces(), ratio);
   usual_ratio_ = std::max(usual_ratio_, ratio);
   largest_ratio_ = std::max(ratio, forgotten * largest_ratio_);
 }
@@ -118,15 +121,9 @@ bool Radau::advance(double limit) {
 
 // Takes the end of the step to the constraints and evaluates there.
 bool Radau::finish() {
-  EquationsOfMotion& equations = motion_.equations();
   for (std::size_t k = 0; k < y_.size(); ++k) y_new_[k] = y_[k] + z_[2][k];
-  if (equations.plan().rows > 0) {
-    if (!equations.factorize(t_new_, Side::before, motion_.q(std::span<const double>(y_new_)))) return false;
-    position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
-    if (!(position_residual_ < RungeKutta::largest_residual)) return false;
-    equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
-  }
-  return motion_.derivative(t_new_, Side::before, y_new_, error_);
+  return implicit_step::project_end(motion_, t_new_, scale_.rate(), y_new_, position_residual_) &&
+         motion_.derivative(t_new_, Side::before, y_new_, error_);
 }
 
 void Radau::accept(double h, double error) {
@@ -196,9 +193,7 @@ bool Radau::advance_by_runge_kutta(double limit) {
   scale_ = runge_kutta_.scale();
   curve_places_ = motion_.equations().evaluator().curve_places();
   stepped_by_runge_kutta_ = true;
-  const double ratio = motion_.equations().smallest_pivot_ratio();
-  usual_ratio_ = std::max(usual_ratio_, ratio);
-  largest_ratio_ = std::max(ratio, forgotten * largest_ratio_);
+  remember_ratio();
   ++crossing_steps_;
   if (runge_kutta_.pivot_ratio() > dependence::behind_passage && !runge_kutta_.dips()) {
     forget();

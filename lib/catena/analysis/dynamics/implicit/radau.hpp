@@ -76,6 +76,7 @@ class Radau final : public Integrator {
   void accept(double h, double error);
   void reject(double h, double error);
   void observe(double h);
+  void remember_ratio();
   bool dips() const;
   bool advance_by_runge_kutta(double limit);
 

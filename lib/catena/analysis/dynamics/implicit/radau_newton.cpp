@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/dynamics/implicit/implicit_step.hpp"
 #include "catena/analysis/dynamics/implicit/radau.hpp"
 
 namespace catena {
@@ -121,13 +122,10 @@ bool Radau::correct(double h, double& change) {
 // The largest entry of a change of [q, qd], in units of `part` of the allowed error and of what rounding makes of it.
 double Radau::size_of(std::span<const double> change, double h, double part) {
   const std::size_t n = motion_.coordinates();
-  const auto unit = [part](double of_tolerance, double of_both) { return of_both - (1 - part) * of_tolerance; };
   double largest = 0;
   for (std::size_t c = 0; c < motion_.moving(); ++c) {
-    const double speed = y_[n + c];
-    const double v_unit = unit(scale_.velocity_unit(c, 0, speed), scale_.velocity_unit(c, h, speed));
-    const double q_unit = unit(scale_.position_unit(c, 0), scale_.position_unit(c, h));
-    const double v = v_unit > 0 ? change[n + c] / v_unit : 0, q = change[c] / q_unit;
+    const auto unit = implicit_step::units(scale_, c, h, y_[n + c], part);
+    const double v = unit.velocity > 0 ? change[n + c] / unit.velocity : 0, q = change[c] / unit.place;
     const double size = std::max(std::abs(v), std::abs(q));
     if (!(size <= largest)) {
       largest = size;

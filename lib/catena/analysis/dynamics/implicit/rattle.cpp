@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/dynamics/implicit/implicit_step.hpp"
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
@@ -36,11 +37,7 @@ bool Rattle::start(double t, std::span<const double> y) {
   return true;
 }
 
-void Rattle::observe(double h) {
-  const std::span<const double> y(y_), k(slope_);
-  scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
-                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
-}
+void Rattle::observe(double h) { implicit_step::observe(motion_, scale_, t_, h, y_, slope_); }
 
 bool Rattle::advance(double limit) {
   Evaluator& evaluator = motion_.equations().evaluator();
@@ -106,13 +103,7 @@ bool Rattle::find_velocities(double h) {
 }
 
 void Rattle::interpolate(double t, std::span<double> y) {
-  const std::size_t n = motion_.coordinates();
-  const double h = t_ - t_before_, s = (t - t_before_) / h;
-  const double end = s * s * (3 - 2 * s), slope0 = h * s * (1 - s) * (1 - s), slope1 = -h * s * s * (1 - s);
-  for (std::size_t k = 0; k < y.size(); ++k) {
-    const double k0 = k < n ? y_before_[n + k] : slope_before_[k], k1 = k < n ? y_[n + k] : slope_[k];
-    y[k] = (1 - end) * y_before_[k] + end * y_[k] + slope0 * k0 + slope1 * k1;
-  }
+  implicit_step::interpolate({t_before_, t_, y_before_, y_, slope_before_, slope_}, t, motion_.coordinates(), y);
 }
 
 IntegratorMemory Rattle::memory() const {
