@@ -55,6 +55,15 @@ bool has_closed_loops(const Plan& plan) {
 
 }  // namespace
 
+std::string names_of(std::span<const IntegrationMethod> used) {
+  std::string names;
+  for (const IntegrationMethod method : used) {
+    const std::string_view name = to_string(method);
+    if (names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + std::string(name);
+  }
+  return names;
+}
+
 // A motion is integrated forwards: rows in another order, or before its start, cannot be had.
 Report Dynamics::check_order() const {
   Report report;

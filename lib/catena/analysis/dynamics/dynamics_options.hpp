@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <string_view>
 
 namespace catena {
@@ -32,6 +34,13 @@ inline std::string_view to_string(IntegrationMethod method) {
 inline bool follows_tolerance(IntegrationMethod method) {
   return method != IntegrationMethod::alpha && method != IntegrationMethod::rattle;
 }
+
+/// Whether derivatives along a motion can follow the steps of a method.
+inline bool is_explicit(IntegrationMethod method) {
+  return follows_tolerance(method) && method != IntegrationMethod::radau;
+}
+/// All methods in use, each once, with commas between them.
+std::string names_of(std::span<const IntegrationMethod> used);
 
 struct DynamicsOptions {
   /// The least tolerance that double precision allows.

@@ -39,16 +39,6 @@ DynamicsOptions options_of(const AnalysisTask& task) {
   return options;
 }
 
-/// All methods in use, each once.
-std::string named(const std::vector<IntegrationMethod>& used) {
-  std::string methods;
-  for (const IntegrationMethod method : used) {
-    const std::string_view name = to_string(method);
-    if (methods.find(name) == std::string::npos) methods += (methods.empty() ? "" : ", ") + std::string(name);
-  }
-  return methods;
-}
-
 /// One object a kind of coordinate.
 std::vector<FieldRecord> records_of(const EstimatedError& error, const Model& model) {
   struct Kind {
@@ -173,8 +163,7 @@ std::string DynamicsTask::conflict() const {
   if (context_.design && context_.checkpoint) return "derivatives and checkpoints do not go together";
   if (options_.method != IntegrationMethod::alpha && context_.task.number("rho", -1) >= 0)
     return "\"rho\" is how strongly method alpha damps, and the method is another: leave it out";
-  if (context_.design && (options_.method == IntegrationMethod::radau || options_.method == IntegrationMethod::alpha ||
-                          options_.method == IntegrationMethod::rattle)) {
+  if (context_.design && !is_explicit(options_.method)) {
     return fmt::format(
         "derivatives of a motion follow explicit steps, which those of method {} are not: leave \"method\" out",
         to_string(options_.method));
@@ -305,7 +294,7 @@ void DynamicsTask::run_with_events_or_pauses() {
   std::vector<std::string>& warnings = result_.report.warnings;
   if (!failure.empty()) warnings.push_back("a checkpoint was not saved: " + failure);
   if (!taken_up.empty()) warnings.push_back(taken_up);
-  result_.fields.push_back({"method", named(analysis.methods())});
+  result_.fields.push_back({"method", names_of(analysis.methods())});
   EventEntries entries(*model_);
   entries.add(context_.task, analysis.records());
   entries.add(analysis.contact_events());
@@ -323,7 +312,7 @@ void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
     });
   });
   add_singular_points(result_, analysis.singular_points(), *model_);
-  result_.fields.push_back({"method", named(analysis.methods())});
+  result_.fields.push_back({"method", names_of(analysis.methods())});
   result_.fields.push_back({"integrated_apart", static_cast<std::int64_t>(analysis.classes())});
   EventEntries entries(*model_);
   entries.add(analysis.contact_events());
@@ -369,7 +358,7 @@ void DynamicsTask::run_on() {
     return std::make_unique<Dynamics>(model, plan, options);
   });
   add_singular_points(result_, analysis.singular_points(), *model_);
-  result_.fields.push_back({"method", named(analysis.methods())});
+  result_.fields.push_back({"method", names_of(analysis.methods())});
   add_jolts(analysis.jolts());
 }
 
