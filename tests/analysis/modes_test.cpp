@@ -217,8 +217,9 @@ TEST(Modes, AboutTheEquilibriumThatWasFound) {
 }
 
 TEST(Modes, OfRandomMechanismsAreThoseOfDenseAlgebra) {
-  int compared = 0;
-  for (unsigned seed = 1; seed <= 400; ++seed) {
+  const unsigned last = size_of_test(400u, 120u);
+  unsigned compared = 0;
+  for (unsigned seed = 1; seed <= last; ++seed) {
     RandomStatics random(seed);
     const std::shared_ptr<Model> model = seed % 2 ? random.network() : random.linkage();
     Equilibrium equilibrium(model);
@@ -234,7 +235,7 @@ TEST(Modes, OfRandomMechanismsAreThoseOfDenseAlgebra) {
     }
     ++compared;
   }
-  EXPECT_GT(compared, 380);
+  EXPECT_GT(compared, last * 19 / 20);
 }
 
 TEST(Modes, DoNotMindRedundantJoints) {

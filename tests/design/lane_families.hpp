@@ -62,7 +62,7 @@ inline std::string analysis_of(const Family& family) {
 
 /// Statuses and measures of a sweep in lanes are those of single runs; most good designs stay in their lanes.
 inline void expect_same_as_alone(const Family& family) {
-  constexpr int designs = size_of_test(40, 16);
+  constexpr int designs = size_of_test(40, 8);
   constexpr std::size_t one_in = size_of_test<std::size_t>(1, 8);  // is run alone
   std::mt19937 random(7);
   std::vector<std::vector<double>> values;

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "analysis/sanitized.hpp"
 #include "design/measured.hpp"
 #include "oracles/scene_text.hpp"
 
@@ -305,7 +306,7 @@ TEST_P(RandomLaws, GradientsAgreeWithDifferencesOfWholeRuns) {
   const std::string inner = R"({"type": ")" + type + R"(", "until": 2.113, "every": 0.37, )" +
                             (free ? R"("tolerance": 1e-11, )" : "") + measured + "}";
   int compared = 0, skipped = 0, refused = 0;
-  for (unsigned seed = 1; seed <= 8; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(8u, 3u); ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(1000 + seed);
     const double T = random(0.3, 0.6), w = random(0.4, 0.8), h = 2e-4;
@@ -338,7 +339,7 @@ TEST_P(RandomLaws, GradientsAgreeWithDifferencesOfWholeRuns) {
       }
     }
   }
-  EXPECT_GT(compared, 100);
+  EXPECT_GT(compared, size_of_test(100, 30));
   EXPECT_LT(skipped, compared / 8);
   EXPECT_LE(refused, 3);
 }

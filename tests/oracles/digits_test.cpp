@@ -94,8 +94,12 @@ TEST(ClaimedDigits, HoldOfRatesThatDrift) {
   EXPECT_EQ(add_moving_digits(70090, claims, Runs::baumgarte), "compared");
   claims.expect("drift");
 }
-TEST(ClaimedDigits, HoldWithContacts) { expect_claims("with contacts", 45, 25, add_touching_digits); }
-TEST(ClaimedDigits, HoldOfPaths) { expect_claims("paths", 40, 25, add_path_digits); }
+TEST(ClaimedDigits, HoldWithContacts) {
+  expect_claims("with contacts", size_of_test(45u, 15u), size_of_test(25, 5), add_touching_digits);
+}
+TEST(ClaimedDigits, HoldOfPaths) {
+  expect_claims("paths", size_of_test(40u, 14u), size_of_test(25, 5), add_path_digits);
+}
 
 /// Two rods under gravity that hang on each other.
 Json double_pendulum(const Json& analyses) {
@@ -179,7 +183,7 @@ TEST(ClaimedDigits, CountTheRoundingOfTime) {
   for (const bool driven : {true, false}) {
     ClaimedDigits claims;
     for (const double phase : {1e2, 1e3, 1e4}) {
-      for (int k = 0; k < 8; ++k) {
+      for (int k = 0; k < size_of_test(8, 3); ++k) {
         TimedDisc disc{.omega = 300 * part(random), .until = 0, .phase = phase * part(random), .driven = driven};
         disc.until = disc.phase / disc.omega;
         const TextRun run = disc.run();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/sanitized.hpp"
 #include "oracles/contact_runs.hpp"
 
 namespace catena::testing {
@@ -71,7 +72,7 @@ TEST(ContactMotion, WheelsRollOrSlipDownSlopes) {
 
 // A fast wheel in any unit of length, on which a torque grows: it rolls until friction no longer suffices, then slips.
 TEST(ContactMotion, FastWheelsBeginToSlip) {
-  for (unsigned seed = 1; seed <= 40; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(40u, 12u); ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     const double unit = std::pow(10, random(-3, 3)), speed = unit * std::pow(10, random(0, 2.5));
@@ -136,7 +137,7 @@ TEST(ContactMotion, BlocksSlideToAStop) {
 
 // A flywheel whose pin rubs loses speed evenly.
 TEST(ContactMotion, PinsRubWheelsToAStop) {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(20u, 8u); ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     const double mass = random(1, 20), inertia = random(0.1, 2), mu = random(0.05, 0.3), radius = random(0.005, 0.05);
@@ -163,7 +164,7 @@ TEST(ContactMotion, PinsRubWheelsToAStop) {
 // A block that a belt carries along: it comes loose where the spring pulls mu_static N, slips, and sticks again where
 // it has the belt's speed; over and over, at instants in closed form.
 TEST(ContactMotion, BlocksStickAndSlipOnBelts) {
-  for (unsigned seed = 1; seed <= 25; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(25u, 10u); ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     const double mass = random(0.5, 2), k = random(30, 150), mu = random(0.1, 0.3),

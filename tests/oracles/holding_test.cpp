@@ -207,7 +207,7 @@ TEST(Holding, SlidersInGuides) {
 // Two links on pins: each pin carries what hangs on it, and turns under the moment of that.
 TEST(Holding, ArmsOnPins) {
   int held = 0;
-  for (unsigned seed = 1; seed <= 30; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(30u, 16u); ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     const double a = random(0.1, 0.5), b = random(0.1, 0.5), m1 = random(0.5, 3), m2 = random(0.5, 3);

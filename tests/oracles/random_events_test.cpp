@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "analysis/sanitized.hpp"
 #include "oracles/random_seeds.hpp"
 #include "scene/event_entries.hpp"
 
@@ -92,7 +93,7 @@ std::string crank(unsigned seed) {
   return difference(run, expected, 1e-9);
 }
 
-TEST(RandomEvents, OfACrank) { expect_no_fault(1, 50, crank); }
+TEST(RandomEvents, OfACrank) { expect_no_fault(1, size_of_test(50u, 15u), crank); }
 
 // Sliders on sines, as many as a block makes of them, seen at both ends of the run alone.
 std::string sliders(unsigned seed) {

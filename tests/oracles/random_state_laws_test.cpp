@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/sanitized.hpp"
 #include "oracles/random_seeds.hpp"
 #include "oracles/scene_text.hpp"
 #include "oracles/state_law_references.hpp"
@@ -88,7 +89,7 @@ std::string random_motion(unsigned seed) {
   return worst < 1e-8 ? "" : "off by " + text_of(worst);
 }
 
-TEST(StateLaws, RandomOnesMoveAsIntegratedInTheTest) { expect_no_fault(1, 40, random_motion); }
+TEST(StateLaws, RandomOnesMoveAsIntegratedInTheTest) { expect_no_fault(1, size_of_test(40u, 12u), random_motion); }
 
 // Random linear laws at rest: F_i = b_i - sum_j K_ij x_j, not symmetric, so that no energy could be minimised.
 // `unsolved` counts searches that end without an answer, and say so.

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/sanitized.hpp"
 #include "oracles/rope_friction_scenes.hpp"
 #include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
@@ -117,7 +118,7 @@ struct Tackle {
 // From rest: which of three pulleys, one of them moving, slide is found by trying all.
 TEST(RopeFriction, TacklesFromRest) {
   std::array<int, 4> sliding{};
-  for (unsigned seed = 1; seed <= 120; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(120u, 50u); ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
     Tackle tackle{.ma = random(0.5, 3), .mb = random(0.5, 3), .mc = random(1, 6), .mu = {}};
@@ -143,7 +144,7 @@ TEST(RopeFriction, TacklesFromRest) {
 
 // In motion: from one instant at which a pulley comes to rest to the next one, accelerations are constant.
 TEST(RopeFriction, TacklesInMotion) {
-  for (unsigned seed = 1; seed <= 60; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(60u, 20u); ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(1000 + seed);
     Tackle tackle{.ma = random(0.5, 3), .mb = random(0.5, 3), .mc = random(1, 6), .mu = {}};

@@ -37,7 +37,7 @@ std::string stack(int boxes, double mu, double drop, const std::string& more, co
 
 TEST(TallStacks, LieAndFallToRest) {
   for (const double drop : {0.0, 0.03}) {
-    for (const int boxes : {7, 10, 16, 25}) {
+    for (const int boxes : {7, 10, size_of_test(16, 8), size_of_test(25, 9)}) {
       SCOPED_TRACE(boxes);
       const TextRun run = run_text(stack(boxes, 0.4, drop, "", R"("until": 1, "every": 0.5, "tolerance": 1e-9)"));
       ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis().report.message;
@@ -54,7 +54,7 @@ TEST(TallStacks, LieAndFallToRest) {
 TEST(TallStacks, GiveWayWhenStaticsSays) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> number(0, 1);
-  for (int n = 0; n < 14; ++n) {
+  for (int n = 0; n < size_of_test(14, 6); ++n) {
     SCOPED_TRACE(n);
     const int boxes = 5 + n, k = static_cast<int>(number(engine) * boxes);
     const double mu = n % 2 == 0 ? 0.9 : 0.02 + 0.1 * number(engine), rate = 1000;
@@ -76,7 +76,7 @@ TEST(TallStacks, GiveWayWhenStaticsSays) {
 
 // A chain of links in waves falls on a rough floor: in the end all of its pins lie there.
 TEST(TallStacks, ChainsFallFlat) {
-  for (const int links : {6, size_of_test(14, 8)}) {
+  for (const int links : {size_of_test(6, 4), size_of_test(14, 6)}) {
     SCOPED_TRACE(links);
     const double l = 0.1;
     double x = 0, y = 0.05;

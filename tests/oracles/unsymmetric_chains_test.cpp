@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "analysis/sanitized.hpp"
 #include "catena/base/at.hpp"
 #include "oracles/random_seeds.hpp"
 #include "oracles/unsymmetric_chain.hpp"
@@ -266,7 +267,9 @@ std::string fault_of_loads(unsigned seed) {
   return "";
 }
 
-TEST(UnsymmetricChains, LoseTheirStabilityAtTheLoadsThatAreFound) { expect_no_fault(1, 30, fault_of_loads); }
+TEST(UnsymmetricChains, LoseTheirStabilityAtTheLoadsThatAreFound) {
+  expect_no_fault(1, size_of_test(30u, 8u), fault_of_loads);
+}
 
 // Chains that the load bends: every row is in balance, and has as many negative values and pairs as dense algebra
 // finds.
@@ -308,7 +311,7 @@ std::string fault_of_path(unsigned seed) {
   return load.size() > 5 ? "" : "too few rows";
 }
 
-TEST(PathsWithoutEnergy, StayInBalanceAndCountWhatGrows) { expect_no_fault(1, 25, fault_of_path); }
+TEST(PathsWithoutEnergy, StayInBalanceAndCountWhatGrows) { expect_no_fault(1, size_of_test(25u, 8u), fault_of_path); }
 
 TEST(EquilibriaWithoutEnergy, AreNotJudgedWithoutTheMassesThatDecide) {
   const std::string scene = ziegler(1, 1, 2, 1, 1, R"({"type": "equilibrium"}, {"type": "modes"})");

@@ -48,9 +48,8 @@ TextRun run_one(const std::string& analysis, double radius, double x0, double sp
                   R"(], "outputs": ["a.x", "a.y", "a.vy", "pull a.value"], "analyses": [)" + analysis + "]}");
 }
 
-// 24 seeds.
 TEST(LockUpRows, StandAtTheInstantOfTheLockUp) {
-  for (unsigned seed = 1; seed <= 24; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(24u, 8u); ++seed) {
     std::mt19937 random(seed);
     const auto draw = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
     const double radius = draw(0.3, 3), x0 = radius * draw(-0.9, 0.9), speed = draw(0.2, 4);
