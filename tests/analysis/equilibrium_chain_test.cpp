@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Links, Catenary, ::testing::Values(4, 10, 100, 1000, 10
 TEST(CatenaryFromRandomAngles, AlwaysEndsInTheStableSolution) {
   const double tension = testing::reference_values("discrete_catenary").at("N100").at("horizontal_tension_H");
   for (const ChainStart start : {ChainStart::random_walk, ChainStart::scattered}) {
-    for (unsigned seed = 1; seed <= size_of_test(200u, 60u); ++seed) {
+    for (unsigned seed = 1; seed <= testing::size_of_test(200u, 60u); ++seed) {
       Equilibrium chain(testing::hanging_chain(100, start, seed));
       const EquilibriumReport report = chain.solve();
       ASSERT_TRUE(report.ok()) << seed << ": " << report.message;

@@ -212,7 +212,7 @@ TEST(ClaimedDigits, HoldOfBucklingLoads) {
   expect_optimism("buckling", optimism, last / 2);
 }
 
-TEST(ClaimedDigits, HoldAtRest) { expect_claims("at rest", 40, 5, add_resting_digits); }
+TEST(ClaimedDigits, HoldAtRest) { expect_claims("at rest", 40, 15, add_resting_digits); }
 
 // Steps of order 5 end with the state that their last stage was evaluated at: nothing is stiff there.
 TEST(ClaimedDigits, OfOrderFiveOnASpline) {

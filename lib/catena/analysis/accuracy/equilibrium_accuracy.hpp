@@ -36,6 +36,7 @@ class EquilibriumAccuracy final : public RowAccuracy {
  private:
   bool correct();
   bool disturb();
+  void leave_what_closes(std::span<double> gap);
   bool answer(std::span<double> force, std::span<double> gap);
   std::vector<double>& values_at(std::span<const double> q, std::span<const double> lambda,
                                  std::vector<double>& values);

@@ -10,6 +10,8 @@
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
+#include "catena/analysis/statics/endless_line.hpp"
+#include "catena/analysis/statics/solvers/static_descent.hpp"
 #include "catena/assembly/rope_ways.hpp"
 #include "catena/base/at.hpp"
 
@@ -85,6 +87,25 @@ Report explain_unbounded(StaticSystem& system, const std::vector<double>& start)
       {}};
 }
 
+// A search that creeps along a line on which the energy falls without end: names the body that moves most on it.
+std::optional<Report> explain_creeping(StaticSystem& system, const std::vector<double>& start) {
+  if (!system.evaluator().conservative() || system.has_gaps()) return {};
+  // At the start, where rounding is least: far away it passes for a stiffness.
+  std::vector<double> q = start;
+  if (!restore_constraints(system, q)) return {};
+  const std::optional<EndlessLine> line = find_endless_line(system, q);
+  if (!line) return {};
+  const auto largest = std::max_element(line->direction.begin(), line->direction.end(),
+                                        [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const auto column = static_cast<int>(largest - line->direction.begin());
+  const bool turns = system.plan().coordinate[at(column)] % 3 == 2;
+  return Report{Status::unbounded,
+                fmt::format("the energy has no minimum: nothing holds body \"{}\", {:.4g} {} it without end{}",
+                            body_of(system.evaluator(), column), line->force, turns ? "N m turn" : "N move",
+                            turns ? "" : " along a straight line"),
+                {}};
+}
+
 }  // namespace
 
 std::optional<Report> find_overflow(StaticSystem& system, std::span<double> lambda) {
@@ -128,6 +149,7 @@ Report explain_failure(StaticSystem& system, const StaticOutcome& outcome, const
             {}};
   }
   if (outcome.end == StaticEnd::unbounded) return explain_unbounded(system, start);
+  if (const std::optional<Report> creeping = explain_creeping(system, start)) return *creeping;
   const std::vector<double> gap = gap_values(system);
   system.close_gaps(std::vector<char>(gap.size(), 0));
   Assembler assembler(system.evaluator());
@@ -169,7 +191,7 @@ void add_warnings(StaticSystem& system, const StaticAccuracy& accuracy, StaticRe
   if (c.neutral) {
     warnings.push_back(
         fmt::format("neutral to second order: {} change{} the energy by less than rounding; the softest: {}",
-                    describe_free_motions(c.neutral_modes, c.free_bodies), c.neutral_modes > 1 ? "s" : "", motion));
+                    describe_free_motions(c.neutral_modes, c.free_bodies), c.neutral_modes > 1 ? "" : "s", motion));
   }
   if (c.negative_modes > 0) {
     warnings.push_back(fmt::format("unstable: {} negative mode{}, the lowest: {}", c.negative_modes,

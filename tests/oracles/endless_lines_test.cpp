@@ -1,0 +1,53 @@
+// Bodies on straight guides that nothing holds along them, beside pendulums on bushings: no energy has a minimum there,
+// and the answer says so, whatever the search met on its way.
+#include <gtest/gtest.h>
+
+#include "analysis/sanitized.hpp"
+#include "oracles/random_seeds.hpp"
+#include "oracles/scene_text.hpp"
+#include "scene/run_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+std::string guide(const std::string& i, const std::string& j, double angle) {
+  return R"({"type": "translational", "i": )" + i + R"(, "j": )" + j + R"(, "axis_i": )" +
+         pair_of(std::cos(angle), std::sin(angle)) + "}";
+}
+
+/// A carriage on a guide, a second one on the first, and a pendulum that a bushing ties to the first; `held`: a spring
+/// holds each along its guide, and there is an equilibrium.
+std::string fault_of(unsigned seed, bool held) {
+  RandomNumbers random(seed);
+  const double one = random(-3, 3), two = random(-3, 3), k = random(100, 2000);
+  const double gx = random(-10, 10), gy = random(-10, -1);
+  const std::string springs =
+      R"(, {"type": "spring_damper", "i": ["ground", [0, 0]], "j": ["a", [0, 0]], "k": 900, "length": 0},
+      {"type": "spring_damper", "i": ["a", [0, 0]], "j": ["b", [0, 0]], "k": 700, "length": 0})";
+  const TextRun run =
+      run_text(R"({"catena": 1, "gravity": )" + pair_of(gx, gy) +
+               R"(, "bodies": {"a": {"mass": 3, "inertia": 0.1}, "b": {"mass": 5, "inertia": 0.2, "position": )" +
+               pair_of(0.3 * std::cos(two), 0.3 * std::sin(two)) + R"(},
+      "pendulum": {"mass": 2, "inertia": 0.05, "position": [0.2, -0.1]}}, "constraints": [)" +
+               guide(R"(["ground", [0, 0]])", R"(["a", [0, 0]])", one) + "," +
+               guide(R"(["a", [0, 0]])", R"(["b", [0, 0]])", two) +
+               R"(, {"type": "revolute", "i": ["a", [0.1, 0]], "j": ["pendulum", [-0.1, 0.1]]}],
+      "forces": [{"type": "bushing", "i": ["a", [0.25, 0.1]], "j": ["pendulum", [0.05, 0.2]], "kx": )" +
+               text_of(k) + R"(, "ky": )" + text_of(k / 2) + R"(, "kt": 5})" + (held ? springs : "") +
+               R"(], "outputs": ["a.x"], "analyses": [{"type": "equilibrium"}]})");
+  const Report& report = run.analysis().report;
+  if (report.status != (held ? Status::ok : Status::unbounded))
+    return std::string(to_string(report.status)) + ": " + report.message;
+  return "";
+}
+
+TEST(EndlessLines, OfCarriagesThatNothingHolds) {
+  expect_no_fault(1, size_of_test(40u, 6u), [](unsigned seed) { return fault_of(seed, false); });
+}
+
+TEST(EndlessLines, AreNotThoseOfCarriagesOnSprings) {
+  expect_no_fault(1, 40, [](unsigned seed) { return fault_of(seed, true); });
+}
+
+}  // namespace
+}  // namespace catena::testing
