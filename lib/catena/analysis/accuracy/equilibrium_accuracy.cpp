@@ -11,13 +11,8 @@ namespace catena {
 namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-// A place that a disturbance moves further, length scales or rad, is not judged by it: K changes along the way.
-constexpr double largest_shift = 1e-5;
 // One factorization and some ten solves: beyond this many columns they are a part of the search that shows.
 constexpr int most_columns = 3000;
-// Of the rounding of a balance, which is a bound: with all of it claims were optimistic by 1 at most, and half of them
-// pessimistic by 92 and more, over 275 random mechanisms.
-constexpr double usual = 0.5;
 // An answer of the linear equations is used if it leaves no more than this of their right-hand sides.
 constexpr double solved = 1e-3;
 
@@ -99,7 +94,7 @@ bool EquilibriumAccuracy::correct() {
   system.residual(lambda_, force);
   for (double& f : force) f = -f;
   for (double& g : gap) g = -g;
-  if (!answer(force, gap) || !(system.change_norm(change_) <= largest_shift)) return false;
+  if (!answer(force, gap) || !(system.change_norm(change_) <= Disturbance::largest_way)) return false;
   for (std::size_t c = 0; c < change_.size(); ++c) q_[at(system.plan().coordinate[c])] += change_[c];
   for (std::size_t r = 0; r < gap.size(); ++r) lambda_[r] += change_lambda_[r];
   system.move_to(q_);
@@ -119,7 +114,8 @@ bool EquilibriumAccuracy::disturb() {
   system.move_to(q_);
   system.residual(lambda_, late);
   for (std::size_t c = 0; c < force.size(); ++c)
-    force[c] = (force[c] - late[c]) / Disturbance::amplification + usual * random_.next() * rounding_[c];
+    force[c] =
+        (force[c] - late[c]) / Disturbance::amplification + Disturbance::usual_rounding * random_.next() * rounding_[c];
   std::vector<double> moduli;
   place_moduli(evaluator, q_, moduli);
   const std::span<const double> terms = terms_.sum(system.jacobian(), moduli);
@@ -128,7 +124,7 @@ bool EquilibriumAccuracy::disturb() {
   if (!answer(force, gap)) return false;
   const double shift = system.change_norm(change_);
   const double size =
-      std::min(Disturbance::amplification, shift > 0 ? largest_shift / shift : Disturbance::amplification);
+      std::min(Disturbance::amplification, shift > 0 ? Disturbance::largest_way / shift : Disturbance::amplification);
   std::vector<double> q = q_, lambda = lambda_;
   for (std::size_t c = 0; c < change_.size(); ++c) {
     const std::size_t k = at(plan.coordinate[c]);

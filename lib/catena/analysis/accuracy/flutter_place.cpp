@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "catena/analysis/accuracy/disturbance.hpp"
+
 namespace catena {
 namespace {
 
@@ -15,7 +17,6 @@ constexpr double no_place = std::numeric_limits<double>::quiet_NaN();
 constexpr double aside = 1e-4;
 // Three distances, in parts of it, that have no places in common.
 constexpr std::array<double, 3> distances = {1, 1.3, 1.7};
-constexpr double deviations_of_place = 2;
 
 /// Two values that may meet: their mean, and D.
 struct Meeting {
@@ -80,7 +81,7 @@ double flutter_place_error(PathSystem& path, const PathPoint& row, const PathPoi
     largest = std::max(largest, std::abs(zeros[k]));
   }
   for (const double zero : zeros) square += (zero - mean) * (zero - mean) / static_cast<double>(zeros.size());
-  return largest + deviations_of_place * std::sqrt(square);
+  return largest + Disturbance::deviations * std::sqrt(square);
 }
 
 }  // namespace catena

@@ -14,7 +14,6 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 // So far places (length scales, rad) and rates (of the largest) may change by a disturbance: what is of second order is
 // then small beside the change.
 constexpr double largest_change = 1e-4;
-constexpr int most_attempts = 6;
 // Four rows take some eighty solves and a few factorizations: that is a millisecond up to the first number of columns,
 // and a small part of the run from the second number of rows on, at six solves and a factorization each.
 constexpr int small_mechanism = 3000;
@@ -136,8 +135,8 @@ bool KinematicAccuracy::examine(const Row& row) {
 bool KinematicAccuracy::disturb(const Row& row, const State& exact) {
   const Disturbance begin = random_;
   State state;
-  double size = Disturbance::amplification;
-  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+  // Less than rounding says nothing.
+  for (double size = Disturbance::amplification; size >= 1;) {
     random_ = begin;
     if (!disturb_by(size, row, exact, state)) return false;
     const double changed = change(exact, state);

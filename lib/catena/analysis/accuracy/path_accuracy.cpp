@@ -12,15 +12,11 @@ namespace catena {
 namespace {
 
 constexpr double no_multiplier = std::numeric_limits<double>::quiet_NaN();
-// A row that a disturbance moves further, in the measure of path_system.hpp, is not judged by it.
-constexpr double largest_way = 1e-5;
 // Beyond this many coordinates rows would have to be kept that are a part of the memory that shows.
 constexpr int most_coordinates = 3000;
 // Rows that are disturbed beside those at critical points: each costs three models more, and some ten solves. What
 // Newton's method left differs from row to row, and is looked for in all.
 constexpr std::size_t disturbed_rows = 20;
-// Of the rounding of a balance, which is a bound; as of an equilibrium (equilibrium_accuracy.cpp).
-constexpr double usual_rounding = 0.5;
 
 }  // namespace
 
@@ -118,7 +114,7 @@ bool PathAccuracy::examine(const Row& row, bool disturbed) {
   std::copy(system_.phi().begin(), system_.phi().end(), sides.begin() + static_cast<std::ptrdiff_t>(columns));
   for (double& side : right_side_) side = -side;
   if (!answer(tangent, right_side_)) return false;
-  if (!(std::sqrt(path_.product(change_, change_)) <= largest_way)) return false;
+  if (!(std::sqrt(path_.product(change_, change_)) <= Disturbance::largest_way)) return false;
   const PathPoint mended = path_.advanced(row.point, change_, 1);
   if (!values_at(mended, mended_values_)) return false;
   square_.assign(row.values.size(), 0.0);
@@ -139,9 +135,12 @@ bool PathAccuracy::take_place_of_flutter(const Row& row) {
   if (!path_.factorize(row.point)) return false;
   const PathPoint tangent = path_.tangent(row.point, path_.along_parameter(1));
   const double way = flutter_place_error(path_, row.point, tangent);
-  if (!(way <= largest_way) || !values_at(path_.advanced(row.point, tangent, largest_way), other_)) return false;
+  if (!(way <= Disturbance::largest_way) ||
+      !values_at(path_.advanced(row.point, tangent, Disturbance::largest_way), other_))
+    return false;
   for (std::size_t k = 0; k < other_.size(); ++k) {
-    if (!std::isnan(row.values[k])) errors_.take_error(k, std::abs(other_[k] - row.values[k]) / largest_way * way);
+    if (!std::isnan(row.values[k]))
+      errors_.take_error(k, std::abs(other_[k] - row.values[k]) / Disturbance::largest_way * way);
   }
   return true;
 }
@@ -152,12 +151,13 @@ bool PathAccuracy::disturb(const PathPoint& mended, const PathPoint& tangent, st
   if (!path_.move_to(mended)) return false;
   place_moduli(evaluator_, path_.q(), moduli_);
   const std::span<const double> terms = terms_.sum(system_.jacobian(), moduli_);
-  for (std::size_t c = 0; c < columns; ++c) right_side_[c] = usual_rounding * random_.next() * rounding[c];
+  for (std::size_t c = 0; c < columns; ++c) right_side_[c] = Disturbance::usual_rounding * random_.next() * rounding[c];
   for (std::size_t r = 0; r < terms.size(); ++r)
     right_side_[columns + r] = random_.next() * Disturbance::epsilon * terms[r];
   if (!answer(tangent, right_side_)) return false;
   const double way = std::sqrt(path_.product(change_, change_));
-  const double size = std::min(Disturbance::amplification, way > 0 ? largest_way / way : Disturbance::amplification);
+  const double size =
+      std::min(Disturbance::amplification, way > 0 ? Disturbance::largest_way / way : Disturbance::amplification);
   for (std::size_t c = 0; c < columns; ++c)
     change_.q[c] += Disturbance::epsilon / 2 * random_.next() * moduli_[at(plan.coordinate[c])];
   for (std::size_t r = 0; r < change_.lambda.size(); ++r)

@@ -8,6 +8,7 @@
 
 #include "catena/analysis/contact/contact_switch.hpp"
 #include "catena/analysis/contact/several_states.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -16,8 +17,6 @@ namespace {
 // Friction of joints and their forces, in turns: each leaves a part of the error, about mu; a thousand rounds reach
 // rounding where that part is up to 0.96.
 constexpr int most_rounds = 1000;
-// Of the terms that a multiplier is the sum of.
-constexpr double multiplier_rounding = 1e-14;
 
 }  // namespace
 
@@ -50,7 +49,7 @@ Report ContactSwitch::press_joints(double t, std::span<const double> qd, const C
       place.kinetic = points_[active_[a]].mu * normal;
     }
     if (!problem.solve()) return wedged(t);
-    if (change <= multiplier_rounding * size) return {};
+    if (change <= thresholds::sum_rounding * size) return {};
     for (std::size_t r = 0; r < lambda.size(); ++r) {
       lambda[r] = free[r];
       terms[r] = std::abs(free[r]);

@@ -10,15 +10,9 @@
 #include <cmath>
 
 #include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
-namespace {
-
-// Of the terms of a rate: what is left of none once it was taken away.
-constexpr double rate_rounding = 1e-14;
-
-}  // namespace
-
 // Closed places that an impact opens too slowly to matter, where the places that are hit and they took turns before.
 std::vector<std::size_t> ContactSwitch::rocking(double t, const std::vector<std::size_t>& hit) const {
   std::vector<std::size_t> lifted;
@@ -102,7 +96,8 @@ void ContactSwitch::settle(std::span<double> qd) {
     const auto take = [&](std::size_t row, const Evaluator::ScalarMotion& motion) {
       if (!(std::abs(motion.rate) <= rest)) return;
       rows.push_back(row);
-      moves |= std::abs(motion.rate) > rate_rounding * std::max(size_of_product(motion, qd), part_of_speed(k, 1));
+      moves |=
+          std::abs(motion.rate) > thresholds::sum_rounding * std::max(size_of_product(motion, qd), part_of_speed(k, 1));
     };
     if (points_[k].kind == ContactKind::rigid) take(2 * a, gap_[k]);
     if (points_[k].kind == ContactKind::rigid && points_[k].has_friction() && points_[k].is_exact())

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "catena/analysis/contact/contact_loads.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -11,8 +12,6 @@ namespace {
 
 // Of the rates that a slip is the sum of, and at which tensions begin: rounding.
 constexpr double rounding = 1e-12;
-// Of the length of a rope: some ten roundings of lengths that are sums.
-constexpr double length_rounding = 1e-14;
 // Of tensions: that of angles of contact, as bodies are on their constraints.
 constexpr double tension_rounding = 1e-10;
 
@@ -89,7 +88,8 @@ void ElasticGrips::look(const Evaluator& evaluator, std::span<const double> qd,
 // More by what rounding of lengths makes of tensions: a grip that has come to rest begins at its limit.
 double ElasticGrips::margin(std::size_t grip) const {
   const double most = std::exp(exponent_[grip + 1].f), before = T_[grip].f, behind = T_[grip + 1].f;
-  const double doubt = length_rounding * rope_->length * (1 / rope_->yields[grip] + 1 / rope_->yields[grip + 1]);
+  const double doubt =
+      thresholds::sum_rounding * rope_->length * (1 / rope_->yields[grip] + 1 / rope_->yields[grip + 1]);
   return std::min(before * most - behind, behind * most - before) + tension_rounding * (before + behind) + doubt;
 }
 

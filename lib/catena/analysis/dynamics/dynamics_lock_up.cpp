@@ -13,13 +13,12 @@
 
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/pose/dead_point.hpp"
+#include "catena/analysis/pose/singular_point.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
 
-// The part of |w| |nu| from which w^T nu counts as something, w known to a tenth of that.
-constexpr double not_nothing = 1e-2;
 // How much longer than by its accelerations the way to the dead point may be.
 constexpr double longest_way = 10;
 
@@ -32,7 +31,7 @@ std::vector<double> vanishing_combination(EquationsOfMotion& equations, double t
   if (!equations.factorize(t, Side::after, q)) return {};
   equations.evaluator().nu(nu);
   equations.solve_motion(none, nu, velocities, w);
-  if (!(disagreement(equations.evaluator(), w, nu) > not_nothing)) return {};
+  if (!(disagreement(equations.evaluator(), w, nu) > vanishing_part)) return {};
   double largest = 0;
   for (const double weight : w) largest = std::max(largest, std::abs(weight));
   for (double& weight : w) weight /= largest;

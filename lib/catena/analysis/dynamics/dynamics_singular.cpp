@@ -7,6 +7,7 @@
 #include "catena/analysis/branches/branch_keeping.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/pose/scaling.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
@@ -14,9 +15,6 @@ namespace {
 
 // For so many of the moments over which derivatives are taken the slope at a start may stand for those after it.
 constexpr double known_moments = 10;
-
-// Projection meets constraints to 1e-15, and what follows from them to that divided by a sine; in length scales or rad.
-constexpr double contradiction = 1e-9;
 
 }  // namespace
 
@@ -71,14 +69,14 @@ bool Dynamics::know_singular_start() {
 Report Dynamics::check_redundant_rows() {
   Report report;
   if (redundant_.count() == 0 || !integrator_->meets_constraints()) return report;
-  if (!(integrator_->position_residual() > contradiction)) return report;
+  if (!(integrator_->position_residual() > thresholds::contradiction)) return report;
   evaluator_.set_time(t_, Side::before);
   evaluator_.set_configuration(integrator_->state().first(q_.size()));
   std::vector<double> phi(static_cast<std::size_t>(plan_->rows));
   evaluator_.phi(phi);
   int worst = 0;
   const double length = evaluator_.length_scale(), left = row_norm(*plan_, phi, length, &worst);
-  if (!(left > contradiction)) return report;
+  if (!(left > thresholds::contradiction)) return report;
   const auto row = static_cast<std::size_t>(worst);
   const int element = plan_->row_element[row];
   report.status = Status::inconsistent;

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
+
 namespace catena {
 namespace {
 
-// A constraint is engaged where it holds already, to this part of the length scale, or rad: events are located to
-// rounding on motions that may be known to some eight digits.
-constexpr double misfit = 1e-6;
+// A constraint is engaged where it holds already, to what of a motion is known, in length scales or rad.
+constexpr double misfit = thresholds::same_value;
 
 }  // namespace
 

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
+
 namespace catena {
 namespace {
 
 // A distance from the value below this part of the column's size counts as zero.
-constexpr double rounding = 1e-13;
+constexpr double rounding = thresholds::carried_rounding;
 // Of the time between two samples: columns that reach their values within rounding at one instant do so this near to
 // it.
 constexpr double one_instant = 1e-3;

@@ -2,16 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Part of the loads that least reactions may leave unbalanced.
-constexpr double balanced = 1e-10;
-
-}  // namespace
-
 // Q - M qdd by columns, at the evaluator's configuration.
 void DrivenReactions::find_loads(std::span<const double> qd, std::span<const double> qdd) {
   const Model& model = evaluator_.model();
@@ -72,7 +66,7 @@ void DrivenReactions::choose_least(const DrivenInstant& now) {
   evaluator_.set_configuration(now.q);
   if (!minimum_norm_->factorize()) return;
   least_lambda_.assign(lambda_.size(), 0.0);
-  if (!(solve_least(least_lambda_) <= balanced)) return;
+  if (!(solve_least(least_lambda_) <= thresholds::no_force)) return;
   lambda_.swap(least_lambda_);
   ambiguity_ = minimum_norm_->ambiguity();
 }

@@ -17,6 +17,7 @@
 #include "catena/analysis/kinematics/driven_reactions.hpp"
 #include "catena/analysis/pose/departure.hpp"
 #include "catena/analysis/run/name_list.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -38,8 +39,6 @@ constexpr double step_of_bridge = 1.0 / 16;
 constexpr double unbounded = 1e-7;
 // Part of the loads that limits may leave unbalanced.
 constexpr double unbalanced = 1e-6;
-// The same for least reactions a little away from t*.
-constexpr double balanced_beside = 1e-9;
 
 // The first that lies where the motion and the functions of time are known; nullptr: none does.
 const Stencil* choose_stencil(const Evaluator& evaluator, double t, double step, const BridgedStretch& stretch) {
@@ -66,7 +65,7 @@ bool DrivenReactions::solve_on_bridge(const MotionBridge& bridge, double t, std:
   find_loads(qd, qdd);
   if (plan_.rows == plan_.columns) return factored && solver_.solve_multipliers(loads_, lambda);
   if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
-  return minimum_norm_->factorize() && solve_least(lambda) <= balanced_beside;
+  return minimum_norm_->factorize() && solve_least(lambda) <= thresholds::no_force;
 }
 
 // lambda_ becomes B.

@@ -284,7 +284,7 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
     all = sizes[1].all;
     if (!std::isfinite(size)) return false;
     if (k > 0) rate = std::max(rate, size / last_size);
-    if (rate * size <= not_computed * all || size <= rounding * all) {
+    if (rate * size <= not_computed * all) {
       left_.of_rates = std::max(left_.of_rates, rate * size / all);
       return true;
     }
@@ -376,7 +376,7 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
     if (!std::isfinite(all)) return false;
     // The ratio of corrections alone may be that of forces while what is left is moments.
     const double ratio = k > 0 ? size / last_size : 0, rate = std::max(refinement_rate(), ratio);
-    if (rate * size <= not_computed * all || size <= rounding * all) {
+    if (rate * size <= not_computed * all) {
       if (all > 0) left_.of_multipliers = std::max(left_.of_multipliers, rate * size / all);
       return true;
     }

@@ -12,14 +12,13 @@
 
 #include "catena/analysis/kinematics/course/step_rules.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/motion/step_growth.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// Steps below this part of the span, or of the time itself, are rounding.
-constexpr double smallest_step = 1e-13;
 // Passages are tried over stretches of this much motion (rad, length scales), one after the other.
 constexpr std::array<double, 6> reaches = {0.2, 0.1, 0.05, 0.015, 0.004, 0.001};
 // They are tried again once steps have become this part of their length at the first trial.
@@ -116,7 +115,7 @@ Report Kinematics::follow_to(double t) {
   Report report;
   const double span = std::abs(t - now_.t);
   Pace pace{
-      .direction = t > now_.t ? 1.0 : -1.0, .shortest = smallest_step * std::max(span, std::abs(t)), .step = span};
+      .direction = t > now_.t ? 1.0 : -1.0, .shortest = shortest_step * std::max(span, std::abs(t)), .step = span};
   // Within a run its own limits hold.
   std::optional<Evaluator::TimeLimit> limit;
   if (!run_.observer) {

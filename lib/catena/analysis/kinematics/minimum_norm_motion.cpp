@@ -14,6 +14,7 @@
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 #include "catena/analysis/pose/singular_start.hpp"
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
@@ -23,12 +24,10 @@
 namespace catena {
 namespace {
 
-constexpr double tolerance = 1e-13;           // of a step's error, length scales or rad
-constexpr double largest_residual = 1e-11;    // of positions after a step
-constexpr double smallest_norm_step = 1e-13;  // part of the time, or of the time a motion of 1 takes
+constexpr double tolerance = 1e-13;         // of a step's error, length scales or rad
+constexpr double largest_residual = 1e-11;  // of positions after a step
 // Velocities larger than this multiple of their average are taken to grow without bound.
 constexpr double runaway = 30;
-constexpr std::size_t most_branches = 4;  // in a message
 // Steps that would have to be shorter than this (rad, length scales) may be near a place where branches meet: it is
 // jumped over by one of `reaches`, with an error that is this many tolerances at most.
 constexpr double suspicious_step = 0.03;
@@ -94,17 +93,14 @@ Report MinimumNormMotion::no_velocity() {
     return singular_points_.back().report_lock_up(*model_);
   }
   Report report;
-  std::string names;
-  const std::vector<int> elements = least_.worst_elements();
-  for (std::size_t k = 0; k < elements.size() && k < most_branches; ++k) {
-    names +=
-        fmt::format("{}{} \"{}\"", k ? ", " : "", model_->element_type(elements[k]), model_->element_name(elements[k]));
-  }
+  NameList names;
+  for (const int element : least_.worst_elements())
+    names.add_text(fmt::format("{} \"{}\"", model_->element_type(element), model_->element_name(element)));
   report.status = Status::inconsistent;
   report.message = fmt::format(
       "no velocities meet all constraints and drivers at t = {:.12g} s; most concerned: {}; likely cause: drivers that "
       "contradict each other, or a motion that the mechanism cannot make",
-      t_, names);
+      t_, names.text());
   return report;
 }
 
@@ -280,7 +276,7 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
 // One step of the leg, from the velocity in the first stage; `target`: where the motion is to come.
 Report MinimumNormMotion::make_step(const Leg& leg, double target) {
   const auto [direction, limit, breaks, rate] = leg;
-  const double smallest = smallest_norm_step * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);
+  const double smallest = shortest_step * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);
   for (bool rejected = false;;) {
     const double remaining = std::abs(limit - t_);
     double h = std::min(step_, rate > 0 ? step_rules::longest_step / rate : step_);

@@ -11,8 +11,6 @@
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {}  // namespace
-
 bool RowChoice::choose(std::span<const double> q) {
   const std::vector<double> values = jacobian_values(evaluator_, q);
   RankOptions options;

@@ -16,7 +16,6 @@ constexpr double slack = 1e-4;
 constexpr double window = 0.02;
 // Seven values of a smooth column foretell its top to some 1e-8 of their range, those about a kink to a tenth.
 constexpr double smooth = 1e-3;
-constexpr int most_steps = 60;
 
 /// The top of the parabola through three points, if it bends downwards.
 std::optional<double> top(double t0, double v0, double t1, double v1, double t2, double v2) {
@@ -143,7 +142,7 @@ std::optional<Extreme::Peak> Extreme::locate(Peak a, Peak middle, Peak b, std::o
     if (const std::optional<Peak> peak = settle(*guess, h, middle.value, piece, at)) return peak;
   }
   double step = b.t - a.t;
-  for (int n = 0; n < most_steps && step > 1e-9 * length; ++n) {
+  for (int n = 0; n < thresholds::most_bisections && step > 1e-9 * length; ++n) {
     const std::optional<double> top_of_three = top(a.t, a.value, middle.t, middle.value, b.t, b.value);
     const bool useful = top_of_three && *top_of_three > a.t && *top_of_three < b.t && n % 4 != 3;
     const double before = middle.t;

@@ -10,8 +10,6 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 // Gradients of this part of the column's size are rounding, by a parameter of any size up to 1e9.
 constexpr double no_gradient = 1e-11;
-// Limits from both sides of an instant that differ by less than this part of the column's size are the same.
-constexpr double no_jump = 1e-10;
 
 // A root mean square is none where parameters of size 1 make a change of 1e14 times it: the column is zero but for
 // rounding, 1e-16 of what it is a difference of.
@@ -40,7 +38,7 @@ void MeasureSet::Account::prepare_path() {
 void MeasureSet::Account::add_jump(const MotionSamples& samples, double t, double before, double after) {
   const std::vector<double> moving = samples.moving(t);
   // Limits of columns that do not jump differ by rounding: where the rate is not known nothing is lost by them.
-  const bool jumps = std::abs(before - after) > no_jump * size_;
+  const bool jumps = std::abs(before - after) > MotionSamples::no_jump * size_;
   if (keeps_nodes_ && moving.empty() && jumps) jumps_.push_back({t, before - after, before * before - after * after});
   for (std::size_t p = 0; p < moving.size(); ++p) {
     if (moving[p] == 0 || !jumps) continue;

@@ -33,8 +33,6 @@ constexpr double no_progress = 0.5;
 // the length, where half of what is allowed is left for bends yet to come.
 constexpr double allowed_row_part = 1e-9;
 constexpr double quartic_grows_by = 2 * 32, eighth_grows_by = 2 * 512;
-// A jump below this part of a column's size so far is rounding.
-constexpr double rounding = 1e-9;
 // Limits at breakpoints are taken from instants at this part of a piece inside, or of t where rounding of instants asks
 // for more: a column that swings a hundred times in the piece bends by (6e-4)^3 there.
 constexpr double inside = 1e-6, inside_of_instant = 1e-11;
@@ -86,7 +84,7 @@ MotionSample MotionSamples::take(const Snapshot& snapshot, bool with_derivative)
     sample.change.assign(columns_.size(), 0.0);
     derivatives_.at(snapshot, sample.derivative, sample.change);
     for (std::size_t c = 0; c < size_.size(); ++c) {
-      if (std::abs(sample.change[c]) <= rounding * size_[c]) sample.change[c] = 0;
+      if (std::abs(sample.change[c]) <= no_jump * size_[c]) sample.change[c] = 0;
     }
   }
   return sample;

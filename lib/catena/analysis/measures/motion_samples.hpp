@@ -65,6 +65,8 @@ struct MotionPiece {
 
 class MotionSamples {
  public:
+  /// A jump below this part of a column's size so far is rounding: limits from both sides of the instant are the same.
+  static constexpr double no_jump = 1e-9;
   /// Of Kronrod's extension of the rule of Gauss with three nodes.
   static constexpr int nodes = 7;
   /// One part of a stretch: the ends and the nodes between them in order, and the weights for its length.

@@ -21,7 +21,7 @@ constexpr double most_reduction = 1e-3;
 constexpr int most_weighings = 6;
 // Part of the forces on massless coordinates that may stay unbalanced: rounding leaves 1e-15, and a coordinate without
 // constrained mass leaves all of it.
-constexpr double unresisted = 1e-9;
+constexpr double unresisted = thresholds::no_force;
 
 }  // namespace
 

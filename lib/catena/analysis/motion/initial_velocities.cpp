@@ -20,13 +20,6 @@ constexpr double given_weight = 1e4;
 // A massless component counts with its small mass, 1e-4 of the constrained mass; a given one thus weighs more than that
 // mass.
 constexpr double given_massless_weight = 1e8;
-// Velocities are corrected until the constraints' residual no longer shrinks, at most so many times.
-constexpr int most_corrections = 4;
-// Velocities of which constraints leave no more than this part are forbidden altogether: what is left is rounding, some
-// hundred of it, and no motion whose energy could be watched.
-constexpr double nothing_left = 1e-13;
-// Residuals of this part of the velocities are the rounding of some dozen terms.
-constexpr double met = 1e-14;
 
 }  // namespace
 
@@ -116,7 +109,9 @@ struct VelocityRows {
 bool meets_constraints(EquationsOfMotion& equations, std::span<const double> q, const VelocityRows& rows,
                        std::vector<double>& velocity) {
   std::vector<double> rest, qd(q.size(), 0.0);
-  const auto meets = [&](std::span<const double> v) { return rows.find_rest(v, rest) <= met * rows.size(v); };
+  const auto meets = [&](std::span<const double> v) {
+    return rows.find_rest(v, rest) <= thresholds::sum_rounding * rows.size(v);
+  };
   if (meets(velocity)) return true;
   if (!equations.factorize(equations.evaluator().time(), Side::after, q)) return false;
   std::copy(velocity.begin(), velocity.end(), qd.begin());
@@ -148,11 +143,12 @@ double change_least(ConstraintSolver& solver, const VelocityRows& rows, const Wa
     if (round > 0 && change <= 1e-15 * size) break;
   }
   double left = std::numeric_limits<double>::infinity();
-  for (int k = 0;; ++k) {
+  // What is left halves at least from round to round: some fifty end it.
+  for (;;) {
     const double now = rows.find_rest(velocity, rest);
     const bool shrinks = now < thresholds::least_gain * left;
     left = now;
-    if (!shrinks || k == most_corrections || now == 0) return left;
+    if (!shrinks || now == 0) return left;
     solver.solve(rest, step, lambda, counters);
     for (std::size_t c = 0; c < step.size(); ++c) velocity[c] += step[c];
   }
@@ -175,7 +171,10 @@ void meet_constraints(EquationsOfMotion& equations, std::span<const double> q, c
   }
   const double left = change_least(solver, rows, wanted, velocity, rest, evaluator.counters);
   const double asked_size = rows.size(wanted.velocity), driven = rows.scaling.row_norm(rows.nu);
-  if (driven == 0 && rows.size(velocity) <= nothing_left * asked_size) std::fill(velocity.begin(), velocity.end(), 0.0);
+  // Velocities of which constraints leave nothing but rounding are forbidden altogether: no motion whose energy could
+  // be watched.
+  if (driven == 0 && rows.size(velocity) <= thresholds::carried_rounding * asked_size)
+    std::fill(velocity.begin(), velocity.end(), 0.0);
   const double scale = std::max({rows.size(velocity), asked_size, driven});
   if (left <= 1e-9 * scale) return;
   int worst = -1;

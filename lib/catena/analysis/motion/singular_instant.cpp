@@ -6,14 +6,13 @@
 #include <optional>
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/analysis/pose/singular_point.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
 
-// Part of the terms of w^T gamma above which the sum does not vanish.
-constexpr double vanishing = 1e-2;
 // Equations of the completed system that are this near to dependence are dropped.
 constexpr double says_nothing = 1e-6;
 // Displacement over which derivatives are taken, rad or length scales.
@@ -73,7 +72,7 @@ bool find_right_hand_sides(const RankReport& rank, const JacobianAlong& along, C
       terms += std::abs(weight * along.gamma[row]);
       rate += weight * along.gamma_rate[row];
     }
-    if (std::abs(sum) > vanishing * terms) return false;
+    if (std::abs(sum) > vanishing_part * terms) return false;
     system.right[system.independent + k] = rate / 3;
   }
   return true;

@@ -12,6 +12,13 @@
 
 namespace catena {
 
+/// Steps of time below this part of the time itself, or of what is left of it, are rounding: some 450 epsilon, so that
+/// instants within them still lie apart by several roundings.
+inline constexpr double shortest_step = 1e-13;
+
+/// A hundred steps in a row that are rejected leave no digit of time.
+inline constexpr int most_rejections = 100;
+
 inline double step_growth(double error, int order) {
   // A cut to a fifth leaves an error of order 5 in one of three thousand: what still fails then is no matter of the
   // step.

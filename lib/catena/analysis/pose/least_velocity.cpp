@@ -12,7 +12,6 @@ namespace {
 
 // Of the largest residual: rows with more than this share in it.
 constexpr double comparable = 0.2;
-constexpr int most_corrections = 4;
 
 bool has_masses(const Evaluator& evaluator) {
   const Plan& plan = evaluator.plan();
@@ -93,11 +92,12 @@ double LeastVelocity::project(double t, Side side, std::span<double> q) {
   double residual = 0, last = 0;
   if (plan_.rows == 0) return residual;
   if (!factorize(t, side, q)) return std::nan("");
-  for (int k = 0; k <= most_corrections; ++k) {
+  // Each correction halves the residual at least: some fifty end it.
+  for (int k = 0;; ++k) {
     evaluator_.set_configuration(q);
     evaluator_.phi(right_);
     residual = scaling_.row_norm(right_);
-    if (!(residual > thresholds::position_rounding) || k == most_corrections || (k > 0 && residual > last / 2)) break;
+    if (!(residual > thresholds::position_rounding) || (k > 0 && residual > last / 2)) break;
     last = residual;
     solver_.solve(right_, step_, lambda_, evaluator_.counters);
     ++evaluator_.counters.iterations;

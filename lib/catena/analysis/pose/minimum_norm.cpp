@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "catena/analysis/run/name_list.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 #include "catena/model/attachment.hpp"
@@ -15,7 +16,7 @@ namespace catena {
 namespace {
 
 // A reaction counts as ambiguous if a random set of multipliers differs from the least equivalent one by this part.
-constexpr double ambiguous_part = 1e-6;
+constexpr double ambiguous_part = thresholds::same_value;
 
 /// Inverts the positive definite n x n matrix (n <= 3) in place, by pivots; rows 3 apart.
 void invert(double* a, int n) {

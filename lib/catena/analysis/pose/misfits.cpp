@@ -12,8 +12,6 @@
 namespace catena {
 namespace {
 
-// In a message.
-constexpr std::size_t most_misfits = 10;
 // A large scene gets fewer steps: each costs a factorization.
 constexpr int most_steps = 600, least_steps = 60, steps_times_rows = 4000000;
 // eps as a part of the largest misfit at the start: first value, factor, last value.
@@ -79,7 +77,7 @@ class MisfitSearch {
     const auto size = [&](const Misfit& m) { return m.angle ? m.size : m.size / evaluator_.length_scale(); };
     std::stable_sort(misfits.begin(), misfits.end(),
                      [&](const Misfit& a, const Misfit& b) { return size(a) > size(b); });
-    std::size_t kept = std::min(most_misfits, misfits.size());
+    std::size_t kept = std::min(NameList::most, misfits.size());
     while (kept > 1 && size(misfits[kept - 1]) < negligible * size(misfits.front())) --kept;
     misfits.resize(kept);
     return misfits;

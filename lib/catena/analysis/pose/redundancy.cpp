@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/pose/singular_point.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -12,8 +13,6 @@ namespace {
 constexpr int most_rows = 200;
 // Part of the largest weight of a combination below which a row may not take part.
 constexpr double certain = 1e-4, rounding = 1e-11;
-// Part of the sum of sizes above which a right-hand side is not rounding.
-constexpr double row_disagreement = 1e-7;
 
 /// Rows of the element that a row belongs to.
 int rows_of_element(const Plan& plan, int row) {
@@ -76,7 +75,7 @@ bool agrees(const RedundantRow& redundant, std::span<const double> b) {
     sum += weight * b[at(row)];
     size += std::abs(weight * b[at(row)]);
   }
-  return !(std::abs(sum) > row_disagreement * size);
+  return !(std::abs(sum) > clear_disagreement * size);
 }
 
 }  // namespace catena

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -126,8 +127,7 @@ std::string_view SingularPoint::kind_name() const {
 }
 
 std::string SingularPoint::describe_branches() const {
-  // In a message.
-  constexpr std::size_t most = 8;
+  constexpr std::size_t most = NameList::most;
   std::string text;
   for (std::size_t k = 0; k < branches.size() && k < most; ++k) {
     text += fmt::format("{}branch {}: {}", text.empty() ? "" : "; ", k + 1, branches[k]);

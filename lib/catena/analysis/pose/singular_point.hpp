@@ -82,5 +82,8 @@ std::vector<int> most_concerned(std::span<const double> share, std::size_t most)
 double disagreement(const Evaluator& evaluator, std::span<const double> w, std::span<const double> b);
 /// A disagreement() above this is not rounding: configurations, and hence their null vectors, are known to some 1e-7.
 inline constexpr double clear_disagreement = thresholds::same_value;
+/// w^T b below this part of its terms, or of |w| |b|, vanishes where w is known to a tenth of that alone, as at places
+/// beside the singular one.
+inline constexpr double vanishing_part = 1e-2;
 
 }  // namespace catena

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/integrators/adams.hpp"
+#include "catena/analysis/motion/step_growth.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
@@ -10,7 +11,6 @@ namespace {
 
 constexpr double goal = 0.5;  // error a step is chosen for, compared with what is allowed
 constexpr double longer = 4;  // steps of Runge-Kutta, compared with those of an Adams method
-constexpr int most_failures = 100;
 constexpr std::size_t fixed_order = 8;
 
 }  // namespace
@@ -33,7 +33,7 @@ bool Adams::advance(double limit) {
     // Two equal steps instead of a long one and a tiny one.
     double h = lands ? remaining : h_;
     if (!lands && !fixed && 2 * h > remaining) h = remaining / 2;
-    if ((h < smallest && !lands) || failures_ > most_failures) return false;
+    if ((h < smallest && !lands) || failures_ > most_rejections) return false;
     t_new_ = lands ? limit : t_ + h;
     if (try_step(h)) return true;
     if (fixed && !crossing_) return false;

@@ -14,9 +14,9 @@ namespace catena {
 namespace {
 
 constexpr int most_iterations = 10;
-constexpr double good_enough = 1e-12;  // residual, in length scales or rad, where iterations gain nothing any more
-// Nor do they where every equation misses by no more than rounding of its terms: with long arms (wheels of a thousand
-// length scales) that is much more, and beside them small wheels turn noticeably by it.
+// Iterations gain nothing any more below `assembled`, nor do they where every equation misses by no more than rounding
+// of its terms: with long arms (wheels of a thousand length scales) that is much more, and beside them small wheels
+// turn noticeably by it.
 constexpr double rounding_of_terms = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
@@ -179,7 +179,8 @@ bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::s
     if (k == 0 && (!factorize() || ratio_ < unusable * largest_ratio_)) return false;
     if (position_residual_ <= thresholds::few_roundings) break;
     if (k > 0 && position_residual_ > 0.5 * before &&
-        ((before < good_enough && position_residual_ < 10 * good_enough) || residual_is_rounding(q)))
+        ((before < thresholds::assembled && position_residual_ < 10 * thresholds::assembled) ||
+         residual_is_rounding(q)))
       break;
     if (k == most_iterations || (k > 0 && position_residual_ > before)) return false;
     before = position_residual_;

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "catena/analysis/motion/motion_memory.hpp"
+#include "catena/analysis/motion/step_growth.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
@@ -83,10 +84,8 @@ class ErrorScale {
   }
   /// The shortest step, s, that may be tried at t: below it time does not advance.
   double smallest_step(double t) const {
-    // Some 450 epsilon of the time: its stages still lie apart by several roundings.
-    constexpr double part = 1e-13;
     const double moment = rate_ > 0 ? 1 / rate_ : 0;
-    return part * std::max(std::abs(t), horizon > t ? std::min(moment, horizon - t) : moment);
+    return shortest_step * std::max(std::abs(t), horizon > t ? std::min(moment, horizon - t) : moment);
   }
   /// Repeats `error()` where velocities and accelerations at the end of a failed step show a faster mechanism than
   /// known before: at a start where forces only begin to grow they are the only scale. The new rates are kept if the

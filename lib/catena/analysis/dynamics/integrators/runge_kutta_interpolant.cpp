@@ -13,9 +13,6 @@ namespace {
 // of a step below which rounding alone leaves too much, 1e-10 of the motion and more; and the position residual, in
 // these tolerances (fifty are a tenth of the run's), that what is interpolated may have otherwise.
 constexpr double fine_tolerance = 2e-11, interpolated_residual = 50;
-// What rounding may make of a cut step that no balance of energy corrects, in tolerances: one that ends beside the
-// singular position makes more of it than the interpolant across.
-constexpr double largest_rounding = 1;
 
 }  // namespace
 
@@ -63,7 +60,9 @@ bool RungeKutta::integrate_to(double t, std::span<double> y) {
   const auto try_from_present_end = [&] {
     t_new_ = t;
     if (!evaluate_stages(t - t_) || !(ratios_.roughness() < least)) return;
-    if (!watches_energy() && rounding_of_crossing(t - t_) > largest_rounding) return;
+    // Rounding of a cut step that no balance of energy corrects, in tolerances: one that ends beside the singular
+    // position makes more of it than the interpolant across.
+    if (!watches_energy() && rounding_of_crossing(t - t_) > 1) return;
     if (!finish_cut()) return;
     found = true;
     least = ratios_.roughness();

@@ -39,9 +39,8 @@ class StepOrder {
 
  private:
   // A step is cut to 0.2 of itself at most (step_growth.hpp): eight times in a row make it 2.6e-6 of what was tried, no
-  // size of a smooth motion. Order 5 then makes so many steps that the place is behind it; a hundred rejections leave
-  // no digit of time.
-  static constexpr int rejections_before_low = 8, low_run = 30, most_rejections = 100;
+  // size of a smooth motion. Order 5 then makes so many steps that the place is behind it.
+  static constexpr int rejections_before_low = 8, low_run = 30;
   int order_ = 8;
   bool may_lower_ = true, long_steps_ = false;
   int low_steps_left_ = 0, rejections_ = 0;
