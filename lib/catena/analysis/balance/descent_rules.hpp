@@ -1,9 +1,11 @@
-// The rules of descent on the constraints (statics/solvers/static_descent.hpp), which single searches and searches in
-// lanes (batch/lane_equilibrium.hpp) keep alike: what they find is then the same.
+// The rules of descent on the constraints (statics/solvers/static_descent.hpp) and of its certificate, which single
+// searches and searches in lanes (batch/lane_equilibrium.hpp) keep alike: what they find is then the same.
 #pragma once
 
 namespace catena::descent {
 
+/// Of a search, where not more are asked for.
+inline constexpr int most_steps = 200;
 /// Of one step, rad, unless the limit has doubled.
 inline constexpr double largest_turn = 0.7;
 /// Shifts of K: the first relative to rounding of the largest stiffness or to force / extent, the last relative to the
@@ -22,5 +24,7 @@ inline constexpr double polishing_change = 1e-6;
 /// correction, length scales or rad, is none.
 inline constexpr double restored = 1e-10, remaining_part = 0.7, longest_correction = 10;
 inline constexpr int most_corrections = 12;
+/// Modes softer than this part of the stiffest are tested for rounding by a certificate: far above any rounding.
+inline constexpr double suspicious_part = 1e-6;
 
 }  // namespace catena::descent

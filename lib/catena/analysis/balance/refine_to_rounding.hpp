@@ -14,11 +14,11 @@
 
 namespace catena {
 
-/// Solves for the right-hand side `given`. solve(v): v := F^-1 v. multiply(x, y): y := A x. `correction`: work.
+/// Solves for the right-hand side `given`. solve(v): v := F^-1 v. multiply(x, y): y := A x. `correction`: work. Returns
+/// the last correction as a part of the solution: what is left is rounding x condition, or F is of another matrix.
 template <class Solve, class Multiply>
-void refine_to_rounding(std::span<const double> weight, std::span<const double> given, std::span<double> x,
-                        std::span<double> correction, Solve&& solve, Multiply&& multiply) {
-  constexpr int most_corrections = 30;
+double refine_to_rounding(std::span<const double> weight, std::span<const double> given, std::span<double> x,
+                          std::span<double> correction, Solve&& solve, Multiply&& multiply) {
   // Corrections below this part of the solution are rounding.
   constexpr double rounding = 1e-16;
   const auto size_of = [&](std::span<const double> v) {
@@ -29,14 +29,15 @@ void refine_to_rounding(std::span<const double> weight, std::span<const double> 
   std::copy(given.begin(), given.end(), x.begin());
   solve(x);
   double before = size_of(x);
-  for (int k = 0; k < most_corrections; ++k) {
+  // Corrections halve at least: some fifty end it.
+  for (;;) {
     multiply(std::span<const double>(x), correction);
     for (std::size_t i = 0; i < x.size(); ++i) correction[i] = given[i] - correction[i];
     solve(correction);
     const double now = size_of(correction);
-    if (!(now < thresholds::least_gain * before)) return;
+    if (!(now < thresholds::least_gain * before)) return now > 0 ? now / size_of(x) : now;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
-    if (now * (now / before) <= rounding * size_of(x)) return;
+    if (now * (now / before) <= rounding * size_of(x)) return now / size_of(x);
     before = now;
   }
 }

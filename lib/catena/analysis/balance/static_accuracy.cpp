@@ -13,9 +13,6 @@
 namespace catena {
 namespace {
 
-// A residual above this part of the loads changes the third digit of some force: not an equilibrium.
-constexpr double shown = 1e-3;
-
 // Sums over the terms of the residual, by columns.
 std::vector<double> sum_terms(const StaticSystem& system, std::span<const double> sizes,
                               std::span<const double> lambda) {
@@ -117,7 +114,7 @@ StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambd
   }
   const bool loaded = result.loads > 0;
   if (!loaded) result.loads = result.forces;
-  const bool shows = result.residual > std::max(shown, tolerance) * result.loads;
+  const bool shows = result.residual > std::max(StaticAccuracy::shown, tolerance) * result.loads;
   result.balanced = finite && !shows && result.residual <= tolerance * result.forces;
   if (result.balanced || !finite) return result;
   std::vector<double> floor = terms;

@@ -22,6 +22,9 @@
 namespace catena {
 
 struct StaticAccuracy {
+  /// A residual above this part of the loads changes the third digit of some force: not an equilibrium.
+  static constexpr double shown = 1e-3;
+
   double residual = 0;  ///< N, largest
   double forces = 0;    ///< N, largest sum of terms at one coordinate
   double loads = 0;     ///< N, the same of gravity, forces and torques alone; of all where there are none

@@ -10,8 +10,6 @@
 namespace catena {
 namespace {
 
-// As many steps as a single search makes.
-constexpr int most_steps = 200;
 // A row of which the rows before it leave less than this part: single searches begin to take it for one that follows
 // from others where factors lose all digits, at 1e-10 or so.
 constexpr double least_rank = 1e-6;
@@ -29,8 +27,8 @@ constexpr double near_rest = 1e-4;
 constexpr double neutral_terms = 1e-8;
 // N, N/m: far from where products are no longer represented, which single searches look for.
 constexpr double most_force = 1e60;
-// A mechanism that goes so many extents away, or turns so far, may not be held.
-constexpr double far_extents = 1e3, far_turn = 1e3;
+// A mechanism that goes so many extents or radians away may not be held.
+constexpr double far_away = 1e3;
 
 }  // namespace
 
@@ -194,7 +192,7 @@ void LaneEquilibrium::search(LaneSet& lanes) {
     for (int r = 0; r < system_.rows(); ++r) system_.lambda[r][lane] = system_.next_lambda[r][lane];
     for (int c = 0; c < system_.columns(); ++c) {
       const double moved = std::abs(system_.q[c][lane] - start_[c][lane]);
-      if (!(moved <= (c % 3 == 2 ? far_turn : far_extents * at_lane(lane).extent)))
+      if (!(moved <= far_away * (c % 3 == 2 ? 1 : at_lane(lane).extent)))
         return leave(lanes, lane, "it goes far from its start");
     }
   });
@@ -203,7 +201,7 @@ void LaneEquilibrium::search(LaneSet& lanes) {
 LaneSet LaneEquilibrium::find(LaneSet lanes, double tolerance) {
   prepare(lanes);
   LaneSet resting = 0;
-  for (int k = 0; k < most_steps && lanes != 0; ++k) {
+  for (int k = 0; k < descent::most_steps && lanes != 0; ++k) {
     if (k > 0) system_.reflect(lanes);
     system_.weigh();
     system_.curve();

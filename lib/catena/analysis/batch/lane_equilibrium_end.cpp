@@ -2,21 +2,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/balance/descent_rules.hpp"
+#include "catena/analysis/balance/static_accuracy.hpp"
 #include "catena/analysis/batch/lane_equilibrium.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
 
-// Certificates of single searches look at modes below 1e-6 of the stiffest more closely.
-constexpr double least_softest = 2e-6;
 // Steps of Newton's method beside a place of rest: the longest one, length scales or rad; the part of it that the next
 // one may have, which shows K to be the same to that part; what is no longer than rounding leaves where motions are
 // soft.
 constexpr int last_steps = 6;
 constexpr double next_part = 0.05, not_shorter = thresholds::least_gain, rounded_step = 1e-9;
-// A residual above this part of the loads counts as a force (balance/static_accuracy.cpp).
-constexpr double shown = 1e-3;
 
 }  // namespace
 
@@ -64,10 +62,12 @@ void LaneEquilibrium::check(LaneSet& lanes, double tolerance) {
     const double force = system_.told(rest_force, lane), dead = system_.told(rest_dead, lane);
     const double residual = system_.told(rest_residual, lane);
     const double stiffest = std::max(system_.told(rest_stiffest, lane), force / system_.length(lane));
-    if (!(residual <= tolerance * force) || (dead > 0 && !(residual <= shown * dead)))
+    if (!(residual <= tolerance * force) || (dead > 0 && !(residual <= StaticAccuracy::shown * dead)))
       return leave(lanes, lane, "its forces balance to the rounding of stiff springs alone");
     if (!(system_.told(rest_gap, lane) <= tolerance)) return leave(lanes, lane, "its constraints do not hold");
-    if (system_.columns() > system_.rows() && !(system_.told(rest_softest, lane) >= least_softest * stiffest))
+    // Softer modes certificates look at more closely; here twice as soft ones are left to them.
+    if (system_.columns() > system_.rows() &&
+        !(system_.told(rest_softest, lane) >= 2 * descent::suspicious_part * stiffest))
       leave(lanes, lane, "a motion is resisted so little that only a certificate tells by how much");
   });
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "catena/analysis/balance/descent_rules.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
@@ -15,8 +16,6 @@
 namespace catena {
 namespace {
 
-// Modes softer than this part of the stiffest are tested for rounding: far above any rounding.
-constexpr double suspicious_part = 1e-6;
 // Stiffnesses below this count as zero, N/m.
 constexpr double no_stiffness = 1e-100;
 constexpr double rigid_part = 1e6;
@@ -117,7 +116,7 @@ class Certifier {
     const std::size_t largest = largest_in_size(lanczos.theta());
     std::vector<double> softest = lanczos.vector(static_cast<int>(largest));
     biased_ = std::abs(1 / lanczos.theta()[largest] - shift());
-    if (biased_ <= suspicious_part * stiffest_) rounding_.emplace(system_, lambda_, 0);
+    if (biased_ <= descent::suspicious_part * stiffest_) rounding_.emplace(system_, lambda_, 0);
     const bool doubtful =
         rounding_ && !nothing_ && system_.plan().rows > 0 && biased_ <= most_bias * (*rounding_)(softest);
     weigh_mode(doubtful, std::move(softest));

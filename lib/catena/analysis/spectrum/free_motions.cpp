@@ -7,6 +7,7 @@
 
 #include "catena/analysis/run/name_list.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/base/at.hpp"
@@ -16,8 +17,6 @@ namespace {
 
 // Part of the largest travel in a motion that a body must have to take part in it: rounding of shapes is far below.
 constexpr double least_share = 1e-8;
-// Part of the forces' largest work below which a motion counts as unloaded.
-constexpr double no_work = 1e-9;
 
 // Columns of a model above which `check`, which must stay quick, does not search.
 constexpr int most_checked_columns = 20000;
@@ -33,7 +32,7 @@ void drop_driven(const StaticSystem& system, std::span<const double> residual, d
     work.push_back(sum);
     square += sum * sum;
   }
-  if (!(std::sqrt(square) > no_work * force) || shapes.empty()) return;
+  if (!(std::sqrt(square) > thresholds::no_force * force) || shapes.empty()) return;
   // Householder: the first of the new motions has all the work, the others none.
   const std::size_t first = static_cast<std::size_t>(
       std::max_element(work.begin(), work.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }) -
@@ -62,7 +61,7 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   system.residual(lambda, residual);
   // Where forces balance only to rounding, stiffnesses are no more accurate.
   const double force = system.force_scale(lambda), left = system.force_norm(residual);
-  const StiffnessFloor floor(system, lambda, left <= no_work * force ? left : 0, &groups);
+  const StiffnessFloor floor(system, lambda, left <= thresholds::no_force * force ? left : 0, &groups);
   const std::vector<double> arms = body_arms(system, lambda);
   std::vector<double> weight;
   for (int coordinate : system.plan().coordinate) {

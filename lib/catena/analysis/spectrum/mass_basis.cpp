@@ -5,15 +5,9 @@
 #include <cmath>
 
 #include "catena/base/at.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
-namespace {
-
-// Part of a motion, in lengths, that must be that of coordinates with mass: the same measure as for ranks.
-constexpr double least_part = 1e-10;
-
-}  // namespace
-
 std::vector<double> basis_weights(StaticSystem& system, const MotionGroups& groups, std::span<const double> mass) {
   std::vector<double> weight(mass.begin(), mass.end());
   for (const MotionGroup& group : groups.groups()) {
@@ -40,7 +34,8 @@ std::optional<int> use_masses(StaticSystem& system, MotionGroup& group, std::spa
     moved.row(static_cast<Eigen::Index>(k)) = z.row(heavy[k]) / system.matrix().inverse_arms()[at(c)];
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> geometry(moved.rows(), moved.cols());
-  geometry.setThreshold(least_part);
+  // The part of a motion, in lengths, that must be that of coordinates with mass.
+  geometry.setThreshold(dependence::follows);
   geometry.compute(moved);
   if (geometry.rank() < z.cols()) {
     // The motion that pivoting found last moves no mass: its largest massless coordinate.

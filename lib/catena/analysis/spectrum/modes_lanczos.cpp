@@ -10,8 +10,8 @@
 namespace catena {
 namespace {
 
-// Parts of theta, and of the largest theta, that a settled mode's residual may have.
-constexpr double settled_part = 1e-11, rounding_part = 1e-14;
+// Part of theta that a settled mode's residual may have, if it is above the rounding of the largest theta.
+constexpr double settled_part = 1e-11;
 // A vector that lost all but this of its length to orthogonality is rounding; one that lost much is put back into the
 // null space, where its own rounding may have left it.
 constexpr double lost_part = thresholds::carried_rounding, polluted_part = 1e-3;
@@ -119,7 +119,8 @@ bool Lanczos::update_spectrum(const Choice& choose) {
   for (int k : chosen) {
     const double residual =
         std::abs(beta_.back() * coefficients_[(static_cast<std::size_t>(k) + 1) * theta_.size() - 1]);
-    if (residual > std::max(settled_part * std::abs(theta_[static_cast<std::size_t>(k)]), rounding_part * largest))
+    if (residual >
+        std::max(settled_part * std::abs(theta_[static_cast<std::size_t>(k)]), thresholds::sum_rounding * largest))
       return false;
   }
   return !chosen.empty();

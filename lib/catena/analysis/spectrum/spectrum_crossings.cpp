@@ -9,9 +9,8 @@
 namespace catena {
 namespace {
 
-// Accuracy of a crossing in parts of the interval; steps to get there, and how many crossings an interval may have.
+// Accuracy of a crossing in parts of the interval, and how many crossings an interval may have.
 constexpr double crossing_accuracy = 1e-13;
-constexpr int most_crossing_steps = 90;
 constexpr std::size_t most_crossings = 40;
 // Crossings nearer to each other than this part of the interval are one.
 constexpr double same_crossing = 1e-9;
@@ -67,7 +66,7 @@ class Crossing {
 
   /// False where a sample between cannot be had. Then low() and high() enclose the change.
   bool locate() {
-    for (int k = 0; k < most_crossing_steps && high_.s - low_.s > accuracy_; ++k) {
+    for (int k = 0; k < thresholds::most_bisections && high_.s - low_.s > accuracy_; ++k) {
       SpectrumSample trial;
       trial.s = 0.5 * (low_.s + high_.s);
       if (k % 3 != 2) {

@@ -13,7 +13,7 @@ namespace catena {
 namespace {
 
 // Residual forces below this part of the largest force count as none.
-constexpr double negligible_part = 1e-7, balance_rounding = thresholds::carried_rounding;
+constexpr double balance_rounding = thresholds::carried_rounding;
 
 }  // namespace
 

@@ -17,6 +17,9 @@ namespace catena {
 /// Assembles q (plan order) unless it meets the constraints already, and moves the system there.
 Report assemble_for_statics(StaticSystem& system, std::vector<double>& q);
 
+/// Residual forces below this part of the largest force count as none.
+inline constexpr double negligible_part = 1e-7;
+
 /// The unbalanced force: the largest one, N, also relative to the largest force in the mechanism, and where.
 struct Imbalance {
   double force = 0, relative = 0;

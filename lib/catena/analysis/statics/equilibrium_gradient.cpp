@@ -4,14 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "catena/analysis/balance/refine_to_rounding.hpp"
+
 namespace catena {
 namespace {
 
-// Refined until a correction is this part of the solution, or no longer a tenth of the one before: each gains the
-// digits that the regularisation leaves (kkt_matrix.hpp), seven to ten.
-constexpr double refined = 1e-14, least_progress = 0.1;
-constexpr int most_refinements = 6;
-// Of corrections that no longer fall: what is left is rounding x condition, or the factors are of another matrix.
+// Of the last correction: larger ones come of factors of another matrix.
 constexpr double rough = 1e-9;
 
 }  // namespace
@@ -24,7 +22,7 @@ EquilibriumGradient::EquilibriumGradient(Equilibrium& rest)
         "gradient of an equilibrium: forces without a potential act, whose stiffness is not "
         "symmetric");
   const std::size_t size = at(plan().columns + plan().rows);
-  for (auto* v : {&right_, &x_, &residual_, &correction_}) v->resize(size);
+  for (auto* v : {&right_, &x_, &correction_}) v->resize(size);
   w_.assign(at(plan().coordinates()), 0.0);
   system_.move_to(q_);
   system_.forget_lengths();
@@ -70,29 +68,11 @@ bool EquilibriumGradient::solve() {
 bool EquilibriumGradient::refine() {
   if (!system_.has_factors()) return false;
   KktMatrix& matrix = system_.matrix();
-  const std::size_t columns = at(plan().columns);
-  const auto sizes = [&](std::span<const double> x) {
-    std::array<double, 2> size{};
-    for (std::size_t k = 0; k < x.size(); ++k)
-      size[k >= columns] = std::max(size[k >= columns], std::abs(x[k]) / (k < columns ? matrix.inverse_arms()[k] : 1));
-    return size;
-  };
-  x_ = right_;
-  matrix.solve_unrefined(x_, system_.evaluator().counters);
-  double before = 1;
-  for (int n = 0; n < most_refinements; ++n) {
-    matrix.multiply(x_, residual_);
-    for (std::size_t k = 0; k < x_.size(); ++k) correction_[k] = right_[k] - residual_[k];
-    matrix.solve_unrefined(correction_, system_.evaluator().counters);
-    for (std::size_t k = 0; k < x_.size(); ++k) x_[k] += correction_[k];
-    const auto change = sizes(correction_), all = sizes(x_);
-    if (!std::isfinite(all[0] + all[1])) return false;
-    const double part = std::max(all[0] > 0 ? change[0] / all[0] : 0, all[1] > 0 ? change[1] / all[1] : 0);
-    if (part <= refined) return true;
-    if (part > least_progress * before) return part <= rough;
-    before = part;
-  }
-  return before <= rough;
+  std::vector<double> weight(at(plan().columns));
+  for (std::size_t c = 0; c < weight.size(); ++c) weight[c] = 1 / (matrix.inverse_arms()[c] * matrix.inverse_arms()[c]);
+  const auto solve_once = [&](std::span<double> b) { matrix.solve_unrefined(b, system_.evaluator().counters); };
+  const auto multiply = [&](std::span<const double> x, std::span<double> y) { matrix.multiply(x, y); };
+  return refine_to_rounding(weight, right_, x_, correction_, solve_once, multiply) <= rough;
 }
 
 Frame<EquilibriumGradient::Along> EquilibriumGradient::frame(int plan_body) const {

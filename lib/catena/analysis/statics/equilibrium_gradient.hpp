@@ -64,9 +64,9 @@ class EquilibriumGradient {
 
   StaticSystem& system_;
   std::span<const double> q_, lambda_;
-  bool neutral_;                                           // by the certificate: rounding may leave the matrix regular
-  std::vector<double> right_, x_, residual_, correction_;  // columns, then rows
-  std::vector<double> w_;                                  // all coordinates
+  bool neutral_;                                // by the certificate: rounding may leave the matrix regular
+  std::vector<double> right_, x_, correction_;  // columns, then rows
+  std::vector<double> w_;                       // all coordinates
 };
 
 template <template <class> class E, class Lift>

@@ -20,8 +20,6 @@ namespace {
 
 // The square of this is the largest number.
 constexpr double largest_number = 1e154;
-// Overlaps below this many length scales count as absent.
-constexpr double absent_overlap = 1e-6;
 
 std::string body_of(const Evaluator& evaluator, int column) {
   const Plan& plan = evaluator.plan();
@@ -164,7 +162,7 @@ Report explain_failure(StaticSystem& system, const StaticOutcome& outcome, const
                     evaluator.model().element_name(rope));
   }
   const auto worst = std::min_element(gap.begin(), gap.end());
-  if (worst != gap.end() && *worst < -absent_overlap * system.length()) {
+  if (worst != gap.end() && *worst < -thresholds::given_depth * system.length()) {
     const int element = plan.row_element[at(plan.gap_rows[static_cast<std::size_t>(worst - gap.begin())])];
     report.message +=
         fmt::format("; {} \"{}\" is violated by {:.3g}: not all of the one-sided elements may be compatible",

@@ -6,13 +6,12 @@
 
 #include "catena/analysis/run/far_places.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
+#include "catena/analysis/statics/solvers/static_steps.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// Refinement of the step that is weighed.
-constexpr double step_rounding = 1e-15;
 // Largest remaining change where forces are known only to rounding of stiff springs, length scales or rad.
 constexpr double rounded_change = 1e-9;
 
@@ -63,7 +62,7 @@ bool StaticJudge::is_accurate(std::span<const double> lambda, const Certificate&
   std::vector<double> force(at(system_.plan().columns)), gap(at(system_.plan().rows), 0.0);
   system_.residual(lambda, force);
   for (double& f : force) f = -f;
-  const StaticStep step = system_.solve(force, gap, step_rounding);
+  const StaticStep step = system_.solve(force, gap, force_rounding);
   std::vector<double> change(step.change.begin(), step.change.end());
   if (certificate.neutral && !certificate.mode.empty()) take_out(system_, certificate.mode, change);
   if (system_.change_norm(change) <= rounded_change || certificate.neutral_modes < 2)

@@ -17,17 +17,14 @@ namespace {
 
 // Steps downhill from where Newton's full steps do not settle: more where there is more to move, until that takes some
 // ten seconds.
-constexpr int least_downhill = 200, most_downhill_work = 20'000'000;
+constexpr int most_downhill_work = 20'000'000;
 // Newton's method may move the result of another solver by this much, length scales or rad: more is another
 // equilibrium.
 constexpr double largest_polish = 0.05;
-constexpr double rounding_tolerance = 1e-15;
 // Below this interior-point iterations only accumulate rounding: Newton's method does the rest.
 constexpr double finest_barrier = 1e-10;
 // Tolerance of gaps and their forces, whatever the option: the last steps are cheap.
 constexpr double gap_tolerance = 1e-12;
-// Steps that do not converge soon rarely do: more are allowed only after other methods have failed.
-constexpr int few_first_steps = 40, most_first_steps = 80;
 // Constraints that are missed by more than this part of the length were left out of a search: what a search meets it
 // meets to its tolerance, 1e-8 unless another is asked for.
 constexpr double missed = 1e-4;
@@ -70,7 +67,8 @@ StaticOutcome StaticTrial::run_smooth(std::vector<double>& q, std::vector<double
   if (outcome.end != StaticEnd::slow) return outcome;
   // Full steps that alternate have lowered the energy all the same: descent continues from their end.
   const int columns = std::max(system_.plan().columns, 1), steps = outcome.iterations;
-  const int most = std::max(least_downhill, std::min(least_downhill + 2 * columns, most_downhill_work / columns));
+  const int most =
+      std::max(descent::most_steps, std::min(descent::most_steps + 2 * columns, most_downhill_work / columns));
   outcome = solve_by_descent(system_, q, lambda, {.max_iterations = most, .tolerance = options_.tolerance});
   outcome.iterations += steps;
   return outcome;
@@ -116,8 +114,7 @@ StaticOutcome StaticTrial::optimise(std::vector<double>& q, std::vector<double>&
 
 StaticOutcome StaticTrial::run_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way,
                                          StaticResult& result) {
-  const StaticGapOptions exact{.first_steps = result.iterations == 0 ? few_first_steps : most_first_steps,
-                               .tolerance = std::min(options_.tolerance, gap_tolerance)};
+  const StaticGapOptions exact{.tolerance = std::min(options_.tolerance, gap_tolerance)};
   StaticOutcome outcome;
   if (way == StaticWay::ipopt || way == StaticWay::nlopt) {
     system_.use_gaps();
@@ -149,7 +146,7 @@ StaticOutcome StaticTrial::polish_by_newton(std::vector<double>& q, std::vector<
   found.keep(system_, q, lambda);
   // To rounding, whatever the tolerance: the steps cost little beside those before.
   const StaticOutcome polished = solve_by_newton(
-      system_, q, lambda, {.max_iterations = 20, .tolerance = rounding_tolerance, .warm = true, .stationary = true});
+      system_, q, lambda, {.max_iterations = 20, .tolerance = force_rounding, .warm = true, .stationary = true});
   std::vector<double> change(at(system_.plan().columns));
   for (std::size_t c = 0; c < change.size(); ++c) {
     const std::size_t k = at(system_.plan().coordinate[c]);

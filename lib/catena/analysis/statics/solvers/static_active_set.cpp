@@ -59,7 +59,7 @@ StaticOutcome finish_with_gaps(StaticSystem& system, std::span<double> q, std::s
     }
     system.close_gaps(set.closed);
     outcome = solve_by_newton(system, q, lambda,
-                              {.max_iterations = 25, .tolerance = 1e-15, .warm = true, .stationary = true});
+                              {.max_iterations = 25, .tolerance = force_rounding, .warm = true, .stationary = true});
     iterations += outcome.iterations;
     outcome.iterations = iterations;
     if (!outcome.converged()) return outcome;

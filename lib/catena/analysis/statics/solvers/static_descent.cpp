@@ -8,15 +8,12 @@
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
+#include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// Growth of the shift where the energy did not decrease.
-constexpr double shortening = 8;
-// A short step ends the search if it is exact, or leaves no more than this part of the forces.
-constexpr double stationary_part = 1e-7;
 // A mechanism that has turned this many radians downhill is not held.
 constexpr double lost_turns = 1e4;
 
@@ -175,7 +172,7 @@ bool Descent::step() {
       shift = std::max({descent::first_of_rounding * stiffest, descent::first_of_force * loads,
                         descent::part_of_last * last_shift_});
     } else {
-      shift *= minimum ? shortening : descent::stiffening;
+      shift *= minimum ? growth_after_failure : descent::stiffening;
     }
     if (!minimum) continue;
     const Trial trial = go(used);
@@ -217,7 +214,7 @@ void Descent::finish() {
   tell();
   const double force = std::max(system_.force_scale(lambda_), load_);
   outcome_.end = outcome_.exact                                 ? StaticEnd::minimum
-                 : outcome_.residual <= stationary_part * force ? StaticEnd::stationary
+                 : outcome_.residual <= negligible_part * force ? StaticEnd::stationary
                                                                 : StaticEnd::slow;
 }
 

@@ -13,12 +13,13 @@
 // Optimization, sections 3.1 and 15.6 (reduced gradients).
 #pragma once
 
+#include "catena/analysis/balance/descent_rules.hpp"
 #include "catena/analysis/statics/solvers/static_newton.hpp"
 
 namespace catena {
 
 struct StaticDescentOptions {
-  int max_iterations = 200;
+  int max_iterations = descent::most_steps;
   double tolerance = 1e-12;  ///< of the residual force, relative to the largest force
 };
 

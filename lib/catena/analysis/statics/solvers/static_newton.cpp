@@ -12,20 +12,14 @@ namespace {
 // Changes, in length scales or rad, below which one more correction with the same factors reaches rounding.
 constexpr double polished_change = 1e-4;
 constexpr int polishing_steps = 4;
-// Part of the residual that a correction may leave, rounding of forces, and the multiple of it that still counts as
-// rounding.
-constexpr double polishing_part = 1e-2, rounding_part = 1e-15, multiple_of_rounding = 10;
+// Part of the residual that a correction may leave, and the multiple of rounding that still counts as rounding.
+constexpr double polishing_part = 1e-2, multiple_of_rounding = 10;
 // Motion of a balanced start under the weights of the first multipliers, length scales or rad: forces are known to
 // first_tolerance, and the weights are forces over the length.
 constexpr double still = 1e-3;
-// Stiffness assumed while the first tensions are found, where there is no load to derive it from, relative to the
-// stiffest spring.
-constexpr double softest_part = 1e-9;
-// Below this no further gain is possible.
-constexpr double last_change = 1e-10;
-// Multipliers beyond this many times the largest applied force, and the sum of all, belong to rows that depend on each
-// other and contradict.
-constexpr double largest_multiplier = 1e7, largest_of_sum = 1e5;
+// Multipliers beyond this many times the sum of all applied forces, which bounds the force through one joint of an
+// unfolded mechanism, belong to rows that depend on each other and contradict.
+constexpr double largest_multiplier = 1e7;
 // Of the linearised equations, relative to the forces and the extent: the error of one step is removed by the next one
 // and by the corrections at the end.
 constexpr double step_tolerance = 1e-7, first_tolerance = 1e-4;
@@ -48,7 +42,7 @@ bool first_tensions(StaticSystem& system, std::span<double> lambda) {
   std::fill(lambda.begin(), lambda.end(), 0.0);
   system.foresee();
   system.fill(lambda, Curvature::convex, 0);
-  const double softest = softest_part * system.matrix().largest_stiffness();
+  const double softest = least_shift * system.matrix().largest_stiffness();
   system.fill(lambda, Curvature::convex, std::max(system.dead_load() / system.length(), softest));
   if (!system.factorize().ok()) return false;
   StaticStep step = system.newton_step(first_tolerance);
@@ -66,7 +60,7 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
   const auto size = [&] {
     system.residual(lambda, residual);
     outcome.residual = system.force_norm(residual);
-    return std::max(outcome.residual / (rounding_part * force), system.phi_norm() / rounding);
+    return std::max(outcome.residual / (force_rounding * force), system.phi_norm() / rounding);
   };
   double now = size(), before = outcome.step;
   for (int k = 0; k < polishing_steps; ++k) {
@@ -226,7 +220,7 @@ bool NewtonSearch::step() {
   if (const IterationTrace* trace = system_.evaluator().trace)
     (*trace)("newton", outcome_.iterations, outcome_.residual, change);
   near_ = change <= exact_change;
-  if (!(force_ <= std::max(largest_multiplier * system_.load_size(), largest_of_sum * system_.total_load()))) {
+  if (!(force_ <= largest_multiplier * system_.total_load())) {
     outcome_.end = StaticEnd::diverged;
     return false;
   }

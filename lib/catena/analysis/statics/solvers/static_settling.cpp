@@ -15,11 +15,9 @@ constexpr double settling_turn = 0.5;
 // Of a step, in extents of the scene.
 constexpr double largest_travel = 0.5;
 // Growth of the residual allowed in an accepted step, and the change of the damping from step to step.
-constexpr double tolerated_growth = 3, fastest_fading = 0.05, settling_stiffening = 8;
+constexpr double tolerated_growth = 3, fastest_fading = 0.05;
 // Of the largest stiffness: more damping helps no more, and less is none.
 constexpr double largest_damping = 1e12, least_damping = 1e-14;
-// Without damping no further gain is possible below this, length scales or rad.
-constexpr double settling_last_change = 1e-10;
 
 class Settling {
  public:
@@ -83,7 +81,7 @@ bool Settling::solve() {
 
 // More damping after a step that failed. False: no more helps.
 bool Settling::stiffen() {
-  damping_ = std::max(settling_stiffening * damping_, 1e-6 * stiffness_);
+  damping_ = std::max(growth_after_failure * damping_, 1e-6 * stiffness_);
   return damping_ <= largest_damping * stiffness_;
 }
 
@@ -106,7 +104,7 @@ double Settling::move() {
 // Rounding of the stiffest spring may be the whole force of a soft one: then the step decides.
 bool Settling::is_balanced() {
   const double scale = std::max(system_.force_scale(lambda_), force_);
-  const double rounding = damping_ == 0 && outcome_.step <= settling_last_change ? system_.rounding_force() : 0;
+  const double rounding = damping_ == 0 && outcome_.step <= last_change ? system_.rounding_force() : 0;
   return outcome_.residual <= options_.tolerance * scale + rounding &&
          system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change());
 }
@@ -125,7 +123,7 @@ bool Settling::step() {
     return stiffen();
   }
   const double ratio = then / std::max(size_, 1e-300);
-  damping_ *= factor_ < 1 ? 2 : std::clamp(ratio, fastest_fading, settling_stiffening);
+  damping_ *= factor_ < 1 ? 2 : std::clamp(ratio, fastest_fading, growth_after_failure);
   if (damping_ < least_damping * stiffness_) damping_ = 0;
   size_ = then;
   if (travel_between(start_, q_).is_lost(extent_)) {

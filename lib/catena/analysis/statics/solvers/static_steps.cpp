@@ -8,8 +8,8 @@
 namespace catena {
 namespace {
 
-// Of the largest stiffness: the first shift, and the growth of the next ones up to one.
-constexpr double first_shift = 1e-9, growth_of_shift = 1e3;
+// Of the shifts after the least one, up to the largest stiffness.
+constexpr double growth_of_shift = 1e3;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ Travel travel_between(std::span<const double> from, std::span<const double> to) 
 }
 
 bool factorize_convex(StaticSystem& system, std::span<const double> lambda) {
-  for (double shift = 0; shift < 1; shift = shift == 0 ? first_shift : growth_of_shift * shift) {
+  for (double shift = 0; shift < 1; shift = shift == 0 ? least_shift : growth_of_shift * shift) {
     const double stiffness = shift > 0 ? shift * std::max(system.matrix().largest_stiffness(), 1e-300) : 0;
     system.fill(lambda, Curvature::convex, stiffness);
     if (system.factorize().ok()) return true;

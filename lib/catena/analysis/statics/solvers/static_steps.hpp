@@ -49,6 +49,16 @@ inline constexpr double newton_turn = 1;
 /// Changes below this, length scales or rad, are followed by the exact K: it is worth trying there.
 inline constexpr double exact_change = 0.3;
 
+/// No further gain is possible with the true matrix where changes are below this, length scales or rad.
+inline constexpr double last_change = 1e-10;
+/// Of what is added to the diagonal of K, as a shift or as damping, after a step that led nowhere: it is about as much
+/// shorter then.
+inline constexpr double growth_after_failure = 8;
+/// Rounding of a sum of forces, in parts of the largest: searches go on to it where their steps are cheap.
+inline constexpr double force_rounding = 1e-15;
+/// What is added to the convex K, of the largest stiffness, where nothing else resists.
+inline constexpr double least_shift = 1e-9;
+
 /// A place that a search may have to return to: its coordinates and multipliers, and where curves touch there, as they
 /// are searched from where they touched last.
 struct KeptPlace {
