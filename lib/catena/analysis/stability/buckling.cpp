@@ -24,7 +24,6 @@ namespace {
 // Steps of the parameter that are tried until its effect on K exceeds rounding.
 constexpr double steps[] = {1, 1e6, 1e12};
 constexpr double visible_effect = 1e-6, smallest_effect = 1e-12;
-constexpr int most_refinements = 20;
 constexpr double linear_part = 1e-9;
 // Constraints met to this, in length scales or rad, do not depend on the parameter.
 constexpr double kept_place = 1e-9;
@@ -250,7 +249,7 @@ Report Buckling::find_by_lanczos(std::vector<Load>& loads, const std::function<b
     bool linear = k == 0;
     // A step equal to the load returns itself: solved for by the secant rule.
     double step = loads[k].distance, step_before = 0, gap_before = 0;
-    for (int round = 0; round < most_refinements; ++round) {
+    for (int round = 0; round < thresholds::most_bisections; ++round) {
       if (Report pass = find_with(step, static_cast<int>(loads.size()), again, effect, go_on); !pass.ok()) return pass;
       if (k >= again.size()) break;
       for (std::size_t other = k; other < std::min(again.size(), loads.size()); ++other) {

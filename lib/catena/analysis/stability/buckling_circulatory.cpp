@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "catena/analysis/run/energyless_forces.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/circulatory_words.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
@@ -26,7 +27,6 @@ namespace {
 
 // How far loads are looked for, in first steps.
 constexpr double farthest_search = 1e4;
-constexpr int end_bisections = 50;
 
 /// Largest relative change of the values, sorted.
 double shift_of(const CirculatoryModes& from, const CirculatoryModes& to) {
@@ -119,7 +119,7 @@ class Buckling::CirculatorySearch {
   bool find_first_step() {
     FirstLoadStep first(buckling_.options_.present);
     double change = 0;
-    for (int k = 0; k < FirstLoadStep::most_trials; ++k) {
+    for (int k = 0; k < thresholds::most_bisections; ++k) {
       step_ = first.step();
       if (!std::isfinite(step_)) break;
       CirculatoryModes there;
@@ -144,8 +144,9 @@ class Buckling::CirculatorySearch {
     if (!front.open) {
       // Up to the end of what the scene allows.
       double inside = front.samples.back().s, beyond = reach;
-      for (int k = 0; k < end_bisections; ++k) {
+      for (int k = 0; k < thresholds::most_bisections; ++k) {
         const double middle = 0.5 * (inside + beyond);
+        if (middle == inside || middle == beyond) break;
         CirculatoryModes there;
         (has_spectrum(front.sign * middle, there) ? inside : beyond) = middle;
       }

@@ -173,7 +173,7 @@ class Buckling::Search {
   Report find_first_step() {
     const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(freedoms_, freedoms_);
     FirstLoadStep first(present_);
-    for (int k = 0; k < FirstLoadStep::most_trials; ++k) {
+    for (int k = 0; k < thresholds::most_bisections; ++k) {
       step_ = first.step();
       if (!spectrum_.evaluate(present_ + side_ * step_)) {
         if (!buckling_.outside_) return spectrum_.report();
@@ -308,7 +308,7 @@ class Buckling::Search {
     // Golden section, ended by the first value below zero.
     constexpr double part = thresholds::golden_part;
     double middle = mu_b[k];
-    for (int step = 0; step < 60 && std::abs(c - a) > 1e-9 * std::abs(b); ++step) {
+    for (int step = 0; step < thresholds::most_bisections && std::abs(c - a) > 1e-9 * std::abs(b); ++step) {
       const bool right = std::abs(c - b) > std::abs(b - a);
       const double x = right ? b + part * (c - b) : b - part * (b - a);
       const Eigen::VectorXd mu = spectrum_.values(present_ + x);
@@ -328,7 +328,9 @@ class Buckling::Search {
   // The root of mu_k between a and b, of opposite signs there: regula falsi that halves the stale side, and bisection
   // every third time.
   double locate(int k, double a, double mu_a, double b, double mu_b) {
-    for (int step = 0; step < 200 && std::abs(b - a) > located * std::max(std::abs(a), std::abs(b)); ++step) {
+    for (int step = 0;
+         step < 2 * thresholds::most_bisections && std::abs(b - a) > located * std::max(std::abs(a), std::abs(b));
+         ++step) {
       double x = step % 3 == 2 ? 0.5 * (a + b) : a + (b - a) * mu_a / (mu_a - mu_b);
       if (x == a || x == b) x = 0.5 * (a + b);
       if (x == a || x == b) break;

@@ -14,8 +14,6 @@ namespace catena {
 
 class FirstLoadStep {
  public:
-  /// Of steps: their search, by factors and then by halving, has ended before.
-  static constexpr int most_trials = 100;
   /// A change below this part is none.
   static constexpr double no_change = 1e-11;
 

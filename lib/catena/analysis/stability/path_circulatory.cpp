@@ -15,8 +15,6 @@
 namespace catena {
 namespace {
 
-// Part of s beside a critical point at which the path's direction is looked at.
-constexpr double beside_point = 1e-6;
 // Steps of inverse iteration for a left null vector.
 constexpr int left_vector_steps = 4;
 

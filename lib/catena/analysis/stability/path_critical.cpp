@@ -10,13 +10,11 @@
 namespace catena {
 namespace {
 
-// Parts of s: accuracy of a critical point, and the distance beyond it at which the search continues.
-constexpr double critical_accuracy = 1e-11, beyond = 1e-6;
+// Of s: accuracy of a critical point.
+constexpr double critical_accuracy = 1e-11;
 constexpr int power_steps = 3;
 // Part of |v_i d_i| that <v, d> must have at a limit point, and part of |v| |d| below which d has no component along v.
 constexpr double limit_part = 1e-5, no_overlap = 1e-9;
-// Below this part of the mechanism's forces a change of the residual over the parameter's range is rounding.
-constexpr double no_force_change = 1e-9;
 
 // The quantities at one place of the step.
 struct Trial {
@@ -143,7 +141,7 @@ bool crosses_another(PathSystem& system, const PathPoint& point, std::span<const
   }
   const double range = system.along_parameter(1).p;
   return std::abs(sum) <= limit_part * terms || terms <= no_overlap * std::sqrt(v * d) ||
-         terms * range <= no_force_change * system.statics().force_size() * travel;
+         terms * range <= thresholds::no_force * system.statics().force_size() * travel;
 }
 
 std::vector<CriticalPoint> find_critical_points(PathSystem& system, const PathStep& step, bool& complete) {
@@ -159,9 +157,9 @@ std::vector<CriticalPoint> find_critical_points(PathSystem& system, const PathSt
     critical.s = place->s;
     critical.point = place->point;
     // Near the point the factors exist, even if rounding makes the matrix singular at the point itself.
-    const Trial before = locator.try_at(std::max(place->s - beyond * step.s, low.s));
+    const Trial before = locator.try_at(std::max(place->s - beside_point * step.s, low.s));
     const double part_before = before.found && !before.singular ? locator.parameter_part(before.point) : 0;
-    Trial after = locator.try_at(std::min(place->s + beyond * step.s, step.s));
+    Trial after = locator.try_at(std::min(place->s + beside_point * step.s, step.s));
     if (!after.found || after.singular) break;
     const double part_after = locator.parameter_part(after.point);
     locator.test_function();

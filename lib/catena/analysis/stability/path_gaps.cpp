@@ -23,13 +23,8 @@ namespace catena {
 namespace {
 
 // Faults (static_active_set.hpp) below the first are rounding of a point that is solved; the place of a change is
-// located until the largest is below the second, and all above its negative change there.
-constexpr double no_fault = 1e-10, located_fault = 1e-12, changes_too = 1e-9;
-// Of the place of a change: a bracket shorter than this is rounding.
-constexpr double shortest_bracket = 1e-14;
-// Part of the parameter's range by which the path is followed to see to which side a gap opens: its effect on a gap is
-// above rounding, the bend of the path below it.
-constexpr double look_ahead = 1e-6;
+// located until the largest is below the second, and all that are as good as closed there change.
+constexpr double no_fault = 1e-10, located_fault = 1e-12;
 // How often sets may change without a step between, besides once each.
 constexpr int most_changes_here = 4;
 
@@ -54,8 +49,7 @@ bool Path::March::change_within(PathPoint& next, double& s, bool& located) {
   PathPoint point = x_;
   s = 0;
   // What touched at the present point, without force, may be about to change there.
-  for (int k = 0; k < thresholds::most_bisections && fault < -located_fault && high - low > shortest_bracket * high;
-       ++k) {
+  for (int k = 0; k < thresholds::most_bisections && fault < -located_fault && std::nextafter(low, high) < high; ++k) {
     double trial = low + (high - low) * low_fault / (low_fault - high_fault);
     if (k % 3 == 2) trial = 0.5 * (low + high);
     PathPoint found = system_.advanced(x_, direction_, trial);
@@ -74,7 +68,7 @@ bool Path::March::change_within(PathPoint& next, double& s, bool& located) {
     point = std::move(found);
   }
   fault = largest_fault(point);
-  std::erase_if(changing_, [&](std::size_t k) { return faults_[k] < fault - changes_too; });
+  std::erase_if(changing_, [&](std::size_t k) { return faults_[k] < fault - thresholds::closed_gap; });
   next = std::move(point);
   return true;
 }
@@ -113,7 +107,7 @@ Report Path::March::change_gaps() {
   // To which side each of them holds.
   static_cast<void>(largest_fault(x_));
   const std::vector<double> here = faults_;
-  static_cast<void>(largest_fault(system_.advanced(x_, direction_, look_ahead)));
+  static_cast<void>(largest_fault(system_.advanced(x_, direction_, beside_point)));
   int holds = 0, fails = 0;
   for (const std::size_t k : changing_) (faults_[k] < here[k] ? holds : fails) += 1;
   changing_.clear();

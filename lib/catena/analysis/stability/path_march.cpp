@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -14,13 +15,12 @@ namespace {
 constexpr double shortest_step = 1e-9;
 // Steps shorter than this part of the usual one are kept though a critical point in them could not be located.
 constexpr double unlocated_step = 1e-4;
-// Iterations after which the next step is shorter, and up to which it may be longer.
-constexpr int many_iterations = 7, few_iterations = 4;
+// Iterations up to which the next step may be longer.
+constexpr int few_iterations = 4;
 // The cosine between the directions at both ends of a step, at least.
 constexpr double largest_bend = 0.9;
 // Rad: what a path may turn to one side and back between two points without being looked at more closely.
 constexpr double unseen_turn = 1e-3;
-constexpr int most_end_trials = 60;
 // How far the end may be from where the tangent meets it, in parts of the way.
 constexpr double largest_miss = 0.3;
 // A step that would leave less than this part of itself to the end goes to the end: a whole number of equal steps
@@ -143,7 +143,7 @@ bool Path::March::step_to_end(PathPoint& next, double& s) {
 
 bool Path::March::find_end(PathPoint& next, double& s) {
   double low = 0, high = s, low_gap = x_.p - to_, high_gap = next.p - to_;
-  for (int k = 0; k < most_end_trials && high - low > 1e-13; ++k) {
+  for (int k = 0; k < thresholds::most_bisections && high - low > 1e-13; ++k) {
     double trial = low + (high - low) * low_gap / (low_gap - high_gap);
     if (k % 3 == 2) trial = 0.5 * (low + high);
     PathPoint point = system_.advanced(x_, direction_, trial);
@@ -234,7 +234,6 @@ Path::March::Progress Path::March::step() {
     if (!write(x_)) return Progress::cancelled;
     if (trial.last) return Progress::finished;
     if (trial.iterations <= few_iterations) length_ = std::min(1.5 * length_, options_.arc);
-    if (trial.iterations >= many_iterations) length_ *= 0.6;
     return Progress::going;
   }
   return Progress::stuck;

@@ -10,7 +10,7 @@
 namespace catena {
 namespace {
 
-// Steps are shortened from seven iterations on (path_march.cpp): one that needs twelve is too long.
+// Steps grow only after four iterations and fewer (path_march.cpp): one that needs twelve is too long.
 constexpr int most_iterations = 12;
 // Solved: residual forces in parts of the largest force, constraints in length scales, the place on the path.
 constexpr double solved = 1e-13, place_solved = 1e-12;

@@ -46,6 +46,10 @@ struct PathStability {
   bool operator==(const PathStability&) const = default;
 };
 
+/// Of a step, or of the parameter's range: so far beside a point a path is looked at. Effects are above rounding there,
+/// the bend of the path below it.
+inline constexpr double beside_point = 1e-6;
+
 class PathSystem {
  public:
   /// `p`: the present value; `scale`: size of the range of the parameter, not zero. The system is at the model of p.
