@@ -25,15 +25,8 @@
 namespace catena {
 namespace {
 
-// The matrix is factored this part of omega2 beside it, where it is regular: every round of inverse iteration leaves
-// the part that other frequencies, at least 1e-6 away, have in a vector by ten times as small or less. Of a load: this
-// part of the largest stiffness.
-constexpr double beside = 1e-7;
-constexpr int most_inverse_rounds = 20;
 // Where two meet: the vectors move by about this part of omega2, and so does what is made of them.
 constexpr double beside_meeting = 1e-11;
-// What the vectors still change by: settled.
-constexpr double settled_vector = 1e-12;
 
 }  // namespace
 
@@ -65,11 +58,11 @@ bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<cons
       });
     });
   }
-  if (!factorize_beside(system, omega2 + beside * size, weight, true))
+  if (!factorize_beside(system, omega2 + inverse_iteration::beside * size, weight, true))
     return fail("the vector on the left of its stiffness was not found");
   std::copy(v.begin(), v.end(), w.begin());
   std::vector<double> next(w.size());
-  for (int round = 0; round < most_inverse_rounds; ++round) {
+  for (int round = 0; round < inverse_iteration::most_rounds; ++round) {
     for (std::size_t c = 0; c < next.size(); ++c) next[c] = weight[c] * w[c];
     std::fill(nu.begin(), nu.end(), 0.0);
     if (!system.solve(next, nu)) break;
@@ -83,7 +76,7 @@ bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<cons
       change = std::max(change, std::abs(next[c] / largest - w[c]));
       w[c] = next[c] / largest;
     }
-    if (change <= settled_vector) return true;
+    if (change <= inverse_iteration::settled) return true;
   }
   return fail("the vector on the left of its stiffness did not settle");
 }
@@ -99,7 +92,7 @@ bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::spa
     return fail("the vectors of the frequency in which two meet were not found");
   std::vector<double> next(v.size()), multipliers(nu.size());
   double changed = 1;
-  for (int round = 0; round < most_inverse_rounds && changed > settled_vector; ++round) {
+  for (int round = 0; round < inverse_iteration::most_rounds && changed > inverse_iteration::settled; ++round) {
     for (const bool of_left : {true, false}) {
       const std::span<double> from = of_left ? v : w, to = of_left ? w : v;
       for (std::size_t c = 0; c < next.size(); ++c) next[c] = weight[c] * from[c];
@@ -116,7 +109,7 @@ bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::spa
       for (std::size_t r = 0; of_left && r < nu.size(); ++r) nu[r] = multipliers[r] / largest;
     }
   }
-  return changed <= settled_vector || fail("the vectors of the frequency in which two meet did not settle");
+  return changed <= inverse_iteration::settled || fail("the vectors of the frequency in which two meet did not settle");
 }
 
 // Forces that only C++ can make show their slopes in no numbers that move with the parameters.

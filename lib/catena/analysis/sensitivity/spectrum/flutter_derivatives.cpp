@@ -20,11 +20,6 @@ namespace {
 using Complex = std::complex<double>;
 using ComplexMatrix = Eigen::SparseMatrix<Complex>;
 
-// The matrix is factored this part of z beside it; other omega2 are at least 1e-6 away: every round of inverse
-// iteration leaves a tenth of what a vector has of them.
-constexpr double beside_pair = 1e-7;
-constexpr int most_rounds_of_pair = 20;
-constexpr double settled_pair = 1e-12;
 // Of |w| |M v|, both as far as they go: below it the pair is one omega2 with a single vector.
 constexpr double one_vector = 1e-9;
 
@@ -62,7 +57,7 @@ ComplexMatrix saddle_of(Evaluator& evaluator, std::span<const double> jacobian, 
 bool find_vector(const ComplexMatrix& matrix, const Eigen::VectorXd& mass, int columns, Eigen::VectorXcd& x) {
   Eigen::SparseLU<ComplexMatrix> factors(matrix);
   if (factors.info() != Eigen::Success) return false;
-  for (int round = 0; round < most_rounds_of_pair; ++round) {
+  for (int round = 0; round < inverse_iteration::most_rounds; ++round) {
     Eigen::VectorXcd next = factors.solve(Eigen::VectorXcd(mass.cast<Complex>().cwiseProduct(x)));
     Eigen::Index largest = 0;
     const double size = next.head(columns).cwiseAbs().maxCoeff(&largest);
@@ -70,7 +65,7 @@ bool find_vector(const ComplexMatrix& matrix, const Eigen::VectorXd& mass, int c
     next /= Complex(next(largest));
     const double change = (next - x).head(columns).cwiseAbs().maxCoeff();
     x = std::move(next);
-    if (change <= settled_pair) return true;
+    if (change <= inverse_iteration::settled) return true;
   }
   return false;
 }
@@ -95,7 +90,8 @@ std::optional<std::vector<Complex>> SpectrumDerivatives::gradient_of_pair(Comple
   for (const bool left : {false, true}) {
     Eigen::VectorXcd& x = both[left ? 1 : 0] = Eigen::VectorXcd::Zero(size);
     for (int c = 0; c < columns; ++c) x(c) = shape[at(c)];
-    const ComplexMatrix matrix = saddle_of(evaluator(), jacobian(), lambda_, mass, z * (1 + beside_pair), left);
+    const ComplexMatrix matrix =
+        saddle_of(evaluator(), jacobian(), lambda_, mass, z * (1 + inverse_iteration::beside), left);
     if (find_vector(matrix, mass, columns, x)) continue;
     fail("the vectors of a pair that flutters did not settle");
     return {};

@@ -37,6 +37,15 @@ std::vector<double> length_metric(const Evaluator& evaluator);
 /// constraints are singular.
 std::optional<std::vector<double>> balancing_multipliers(Evaluator& evaluator, double t, std::span<const double> q);
 
+namespace inverse_iteration {
+/// Of vectors of an omega2: the matrix is factored this part of it beside it, where it is regular, and every round
+/// leaves of other omega2, at least 1e-6 away, a tenth of what a vector has of them; of a load this part of the largest
+/// stiffness. They are settled where they change by no more than the last.
+inline constexpr double beside = 1e-7;
+inline constexpr int most_rounds = 20;
+inline constexpr double settled = 1e-12;
+}  // namespace inverse_iteration
+
 class SpectrumDerivatives final : public StateDerivatives {
  public:
   /// `from_model`: a place that is no equilibrium follows from what the model gives; else it is where an earlier
