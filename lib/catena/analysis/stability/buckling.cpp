@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "catena/analysis/balance/force_sizes.hpp"
 #include "catena/analysis/balance/static_holding.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
@@ -106,7 +107,7 @@ Report Buckling::not_stable() const {
 
 SystemState Buckling::state() const { return state_of(evaluator_, t_, point_.q); }
 
-Report Buckling::place_load(double p, std::vector<double>& lambda) {
+Report Buckling::place_load(double p) {
   PathPoint loaded = point_;
   loaded.p = p;
   outside_ = !path_.move_to(loaded);
@@ -122,16 +123,24 @@ Report Buckling::place_load(double p, std::vector<double>& lambda) {
   // The multipliers are needed even if the load is already known to move the equilibrium.
   const bool moves = !balance_loads(system_, loaded.lambda).negligible();
   moves_ = moves_ || moves;
-  lambda = std::move(loaded.lambda);
+  loaded_ = std::move(loaded.lambda);
   return {};
 }
 
 Report Buckling::stiffness_at(double p, KktMatrix& matrix) {
-  std::vector<double> lambda;
-  if (Report placed = place_load(p, lambda); !placed.ok()) return placed;
-  matrix.set_hessian(evaluator_, lambda, Curvature::exact);
+  if (Report placed = place_load(p); !placed.ok()) return placed;
+  matrix.set_hessian(evaluator_, loaded_, Curvature::exact);
   matrix.complete(system_.jacobian(), 0);
   return {};
+}
+
+// Multipliers that would be zero are what the solution of linear equations leaves of the loads.
+StiffnessFloor Buckling::floor_under_load() {
+  const ForceSizes sizes = force_sizes(evaluator_);
+  double largest = 0;
+  for (std::size_t c = 0; c < sizes.loads.size(); ++c)
+    largest = std::max(largest, sizes.loads[c] / (c % 3 == 2 ? evaluator_.length_scale() : 1));
+  return {system_, loaded_, thresholds::solved * largest};
 }
 
 Report Buckling::find_with(double step, int count, std::vector<Load>& loads, double& effect,

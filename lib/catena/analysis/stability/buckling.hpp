@@ -94,8 +94,11 @@ class Buckling {
   Report find_by_dense(std::vector<Load>& loads, const std::function<bool()>& go_on);
   /// K at a value of the parameter to `matrix`, with the multipliers that belong to it.
   Report stiffness_at(double p, KktMatrix& matrix);
+  /// What rounding of the multipliers at the value last taken leaves of stiffnesses: a load whose effect is below it,
+  /// however large it is, has none.
+  StiffnessFloor floor_under_load();
   /// Takes the system to a value of the parameter, the configuration kept, with the multipliers that belong to it.
-  Report place_load(double p, std::vector<double>& lambda);
+  Report place_load(double p);
   /// Divergence and flutter, to the report.
   Report find_without_energy(BucklingReport& report, const std::function<bool()>& go_on);
   void find_errors(BucklingReport& report);
@@ -113,6 +116,7 @@ class Buckling {
   PathPoint point_;
   std::optional<MotionGroups> groups_;
   ActiveSet set_;
+  std::vector<double> loaded_;  // multipliers at the value last taken
   double t_ = 0;
   bool moves_ = false;    // the load moves the equilibrium
   bool outside_ = false;  // the scene does not allow the last value

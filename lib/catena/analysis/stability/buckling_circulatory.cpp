@@ -28,15 +28,25 @@ namespace {
 // How far loads are looked for, in first steps.
 constexpr double farthest_search = 1e4;
 
-/// Largest relative change of the values, sorted.
-double shift_of(const CirculatoryModes& from, const CirculatoryModes& to) {
+/// Largest relative change of the values, sorted, that is more than rounding under the load.
+double shift_of(const CirculatoryModes& from, const CirculatoryModes& to, const StiffnessFloor& rounding) {
   if (from.modes.size() != to.modes.size()) return 1;
   double most = 0;
   for (std::size_t k = 0; k < from.modes.size(); ++k) {
     const double size = std::max(std::abs(from.modes[k].omega2), std::numeric_limits<double>::min());
-    most = std::max(most, std::hypot(to.modes[k].omega2 - from.modes[k].omega2, to.modes[k].imaginary) / size);
+    const double change = std::hypot(to.modes[k].omega2 - from.modes[k].omega2, to.modes[k].imaginary);
+    if (change > rounding(to.modes[k].shape)) most = std::max(most, change / size);
   }
   return most;
+}
+
+/// Whether the load is so large that rounding of what bears it hides every one of the values.
+bool is_hidden(const CirculatoryModes& from, const CirculatoryModes& to, const StiffnessFloor& rounding) {
+  double largest = 0;
+  for (const CirculatoryMode& mode : from.modes) largest = std::max(largest, std::abs(mode.omega2));
+  return std::all_of(to.modes.begin(), to.modes.end(), [&](const CirculatoryMode& mode) {
+    return rounding(mode.shape) >= FirstLoadStep::least_change * largest;
+  });
 }
 
 }  // namespace
@@ -105,9 +115,8 @@ class Buckling::CirculatorySearch {
 
   /// The spectrum at a distance from the present value.
   Report spectrum(double x, CirculatoryModes& found) {
-    std::vector<double> lambda;
-    if (Report placed = buckling_.place_load(buckling_.options_.present + x, lambda); !placed.ok()) return placed;
-    if (motions_->find(lambda, 0, found)) return {};
+    if (Report placed = buckling_.place_load(buckling_.options_.present + x); !placed.ok()) return placed;
+    if (motions_->find(buckling_.loaded_, 0, found)) return {};
     return {
         Status::not_converged,
         fmt::format("the stiffness at the value {:.6g} of the parameter is not finite", buckling_.options_.present + x),
@@ -124,7 +133,9 @@ class Buckling::CirculatorySearch {
       if (!std::isfinite(step_)) break;
       CirculatoryModes there;
       if (has_spectrum(step_, there) || has_spectrum(-step_, there)) {
-        change = shift_of(present_, there);
+        const StiffnessFloor rounding = buckling_.floor_under_load();
+        change = shift_of(present_, there, rounding);
+        if (change == 0 && is_hidden(present_, there, rounding)) return false;
         if (first.take(change)) return true;
       } else {
         change = 1;

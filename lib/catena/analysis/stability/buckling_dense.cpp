@@ -97,6 +97,24 @@ class Buckling::Spectrum {
     return false;
   }
   const Eigen::MatrixXd& now() const { return now_; }
+  /// What the load last evaluated changes, in parts of the present stiffness: the largest entry that is more than
+  /// rounding. Nothing where all are rounding and this is at least `hidden` of every mode: such a load has no effect.
+  std::optional<double> change(double hidden) {
+    const StiffnessFloor floor = buckling_.floor_under_load();
+    const Eigen::Index f = now_.rows();
+    std::vector<std::vector<double>> modes;
+    for (Eigen::Index k = 0; k < f; ++k) modes.push_back(expand(metric_.col(k)));
+    double largest = 0, least = std::numeric_limits<double>::infinity();
+    for (Eigen::Index i = 0; i < f; ++i) {
+      least = std::min(least, floor(modes[at(i)]));
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        const double entry = std::abs(now_(i, j) - (i == j ? 1 : 0));
+        if (entry > largest && entry > floor.between(modes[at(i)], modes[at(j)])) largest = entry;
+      }
+    }
+    if (largest == 0 && least >= hidden) return std::nullopt;
+    return largest;
+  }
   /// The effect of rounding of the stiffest mode in the metric of the softest.
   double rounding() const { return rounding_; }
   Report& report() { return report_; }
@@ -171,7 +189,6 @@ class Buckling::Search {
 
   // The first step: where the stiffness has changed by a few percent of itself, to the side that the scene allows.
   Report find_first_step() {
-    const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(freedoms_, freedoms_);
     FirstLoadStep first(present_);
     for (int k = 0; k < thresholds::most_bisections; ++k) {
       step_ = first.step();
@@ -184,8 +201,9 @@ class Buckling::Search {
         }
       }
       if (!first.is_refused()) {
-        change_ = (spectrum_.now() - unit).cwiseAbs().maxCoeff();
-        if (first.take(change_)) return {};
+        const std::optional<double> change = spectrum_.change(FirstLoadStep::least_change);
+        change_ = change.value_or(0);
+        if (!change || first.take(change_)) return {};
       }
       if (!first.move(change_)) return {};
     }

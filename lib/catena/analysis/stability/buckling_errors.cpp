@@ -24,7 +24,7 @@ constexpr double aside = 1e-4;
 void Buckling::find_errors(BucklingReport& report) {
   const Counters counted = evaluator_.counters;
   KktMatrix matrix(plan_, system_.radius());
-  std::vector<double> product(static_cast<std::size_t>(plan_->columns)), lambda;
+  std::vector<double> product(static_cast<std::size_t>(plan_->columns));
   for (std::size_t k = 0; k < report.loads.size(); ++k) {
     const std::vector<double>& v = report.shapes[k];
     const double load = report.loads[k], distance = std::abs(load - options_.present);
@@ -38,8 +38,8 @@ void Buckling::find_errors(BucklingReport& report) {
     const double slope =
         (stiffness(load + aside * distance) - stiffness(load - aside * distance)) / (2 * aside * distance);
     double error = std::numeric_limits<double>::quiet_NaN();
-    if (place_load(load, lambda).ok()) {
-      const StiffnessFloor floor(system_, lambda, 0);
+    if (place_load(load).ok()) {
+      const StiffnessFloor floor(system_, loaded_, 0);
       error = usual_load_part * floor(v) / std::abs(slope) +
               (groups_->are_small() ? located_load : refined_load) * distance;
     }

@@ -16,6 +16,8 @@ class FirstLoadStep {
  public:
   /// A change below this part is none.
   static constexpr double no_change = 1e-11;
+  /// What a first step changes at least, in parts of the stiffness or the spectrum.
+  static constexpr double least_change = 0.02;
 
   explicit FirstLoadStep(double present) : step_(present != 0 ? 0.1 * std::abs(present) : 1) {}
 
@@ -45,8 +47,8 @@ class FirstLoadStep {
   }
 
  private:
-  // In parts of the stiffness or the spectrum.
-  static constexpr double least_change = 0.02, most_change = 0.5;
+  // And at most: half of itself, before the first mode that softens evenly is gone.
+  static constexpr double most_change = 0.5;
   // Factors by which the step is looked for.
   static constexpr double coarse = 1e3, fine = 4;
 
