@@ -125,6 +125,8 @@ StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambd
   double worst = -1;
   for (int c = 0; c < plan.columns; ++c) {
     const double force = std::abs(residual[at(c)]), rounding = thresholds::few_roundings * floor[at(c)];
+    // What is balanced there needs no rounding: a body without loads may have none.
+    if (force * inverse_arms[at(c)] <= tolerance * result.forces) continue;
     rounded = rounded && force <= rounding;
     if (force > worst * rounding) {
       worst = rounding > 0 ? force / rounding : std::numeric_limits<double>::infinity();

@@ -7,11 +7,11 @@
 //
 // K an element's stiffness, of constraints lambda Phi_qq, s_j the size of the numbers from which its places are formed
 // (m; 1 rad and the angle): a place is known to eps s, so that the force of a spring of k N/m is known to eps k s at
-// best. A point is balanced if max |r| <= tolerance x max forces_c, and balanced to rounding if |r_c| <= rounding_c at
-// every coordinate; where there are no loads and all forces are rounding, r is compared with the largest rounding_c
-// that constraints transmit. Neither is accepted where the residual is a visible part of the loads (`shown`): forces of
-// springs under prestress, or the rounding of very stiff ones, may be larger than the loads that they carry. Source:
-// Higham, Accuracy and Stability of Numerical Algorithms, section 3.1 (running error).
+// best. A point is balanced if max |r| <= tolerance x max forces_c, and balanced to rounding if at every coordinate
+// |r_c| is within that or rounding_c; where there are no loads and all forces are rounding, r is compared with the
+// largest rounding_c that constraints transmit. Neither is accepted where the residual is a visible part of the loads
+// (`shown`): forces of springs under prestress, or the rounding of very stiff ones, may be larger than the loads that
+// they carry. Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1 (running error).
 #pragma once
 
 #include <span>

@@ -148,7 +148,8 @@ void CoordinatePartition::pick_independent(int freedoms) {
 }
 
 // Whether residual_, that of q, is rounding of sum |Phi_q| |q| in each equation, q counted from the ground's origin:
-// places of curves on the ground are.
+// places of curves on the ground are. Where equations depend on each other those that are kept pass the rounding of
+// one on to all others, to angles by the length scale.
 bool CoordinatePartition::residual_is_rounding(std::span<const double> q) {
   std::fill(multipliers_.begin(), multipliers_.end(), 0.0);
   for (int c = 0; c < plan_.columns; ++c) {
@@ -160,6 +161,8 @@ bool CoordinatePartition::residual_is_rounding(std::span<const double> q) {
     for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k)
       multipliers_[at(plan_.jacobian.row_index[at(k)])] += std::abs(jacobian_[at(k)]) * size;
   }
+  if (equations_.left_out().count() > 0)
+    return position_residual_ <= rounding_of_terms * scaling_.row_norm(multipliers_);
   for (std::size_t r = 0; r < residual_.size(); ++r) {
     if (!(std::abs(residual_[r]) <= rounding_of_terms * multipliers_[r])) return false;
   }
