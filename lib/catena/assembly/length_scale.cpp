@@ -145,11 +145,16 @@ double mean_gyration(const Model& model) {
 
 }  // namespace
 
-double length_without_joints(const Model& model) {
+double given_length(const Model& model) {
   for (const auto length : {extent, mean_force_arm, mean_curve_size, mean_gyration, size_of_gaps, way_against_weight}) {
     if (const double found = length(model); found != 0) return found;
   }
-  return 1;
+  return 0;
+}
+
+double length_without_joints(const Model& model) {
+  const double found = given_length(model);
+  return found != 0 ? found : 1;
 }
 
 // Points of constraints; where all points of a body are at its centroid, those of force elements; else the mean of what

@@ -1,11 +1,15 @@
 // A run of Dynamics from its first row to its last, in one go or in parts; where it pauses and is taken up again.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/motion/way_of_motion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
+#include "catena/assembly/length_scale.hpp"
 #include "catena/base/flush_denormals.hpp"
 #include "catena/columns/energy.hpp"
 
@@ -17,6 +21,14 @@ constexpr std::int64_t steps_between_checks = 32;
 // Velocities that are projected by less than this part of the largest are those of a smooth motion: steps keep them to
 // 1e-12.
 constexpr double no_jump = 1e-10;
+
+// Whether nothing in the scene gives a length: neither joints, nor bodies, nor what acts on them.
+bool lacks_length(const Evaluator& evaluator) {
+  if (given_length(evaluator.model()) != 0) return false;
+  double arms = 0;
+  evaluator.attachment_radii(&arms);
+  return arms == 0;
+}
 
 }  // namespace
 
@@ -73,6 +85,10 @@ Report Dynamics::start() {
   if ((work_.account || conserves) && options_.step == 0) work_.balance.emplace();
   row_.driver_work.assign(work_.account ? model_->elements.size() : 0, 0.0);
   motion_.emplace(equations_, work_.account ? &*work_.account : nullptr);
+  if (lacks_length(evaluator_)) {
+    const double way = way_of_motion(equations_, t_, q_, qd_, run_.grid.last());
+    if (way > 0) motion_->set_length_scale(way);
+  }
   integrator_ = make_integrator(*motion_, run_.grid.last());
   row_.y.assign(motion_->size(), 0.0);
   row_.slope.assign(motion_->size(), 0.0);

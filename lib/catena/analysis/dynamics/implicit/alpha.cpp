@@ -31,7 +31,7 @@ Alpha::Alpha(Motion motion, const AlphaOptions& options) : motion_(motion), opti
   b_ = (g_ + 0.5) * (g_ + 0.5) / 4;
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
-  scale_.length = motion_.equations().evaluator().length_scale();
+  scale_.length = motion_.length_scale();
   scale_.set_masses(motion_.equations().masses().mass);
 }
 

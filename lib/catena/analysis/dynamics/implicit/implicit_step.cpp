@@ -26,8 +26,8 @@ bool project_end(const Motion& motion, double t, double rate, std::span<double> 
 void observe(const Motion& motion, ErrorScale& scale, double t, double h, std::span<const double> y,
              std::span<const double> slope) {
   const EquationsOfMotion& equations = motion.equations();
-  scale.observe(t, h, motion.qd(y).first(motion.moving()), motion.qd(slope).first(motion.moving()),
-                equations.applied_forces(), equations.smallest_pivot_ratio());
+  scale.observe(t, h, motion.q(y).first(motion.moving()), motion.qd(y).first(motion.moving()),
+                motion.qd(slope).first(motion.moving()), equations.applied_forces(), equations.smallest_pivot_ratio());
 }
 
 Units units(const ErrorScale& scale, std::size_t c, double h, double speed, double part) {

@@ -30,7 +30,7 @@ Radau::Radau(Motion motion, const RungeKuttaOptions& options)
   usual_ratio_ = std::max(usual_ratio_, options.usual_ratio);
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
-  scale_.length = motion_.equations().evaluator().length_scale();
+  scale_.length = motion_.length_scale();
   scale_.set_masses(motion_.equations().masses().mass);
 }
 

@@ -23,7 +23,7 @@ Rattle::Rattle(Motion motion, double step, double horizon) : motion_(motion), st
   for (std::vector<double>* y : {&y_, &y_before_, &y_new_, &slope_, &slope_before_}) y->assign(motion_.size(), 0.0);
   half_.assign(motion_.coordinates(), 0.0);
   scale_.horizon = horizon;
-  scale_.length = motion_.equations().evaluator().length_scale();
+  scale_.length = motion_.length_scale();
   scale_.set_masses(motion_.equations().masses().mass);
 }
 

@@ -31,7 +31,7 @@ Adams::Adams(Motion motion, const RungeKuttaOptions& options)
   usual_ratio_ = std::max(usual_ratio_, options.usual_ratio);
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
-  scale_.length = motion_.equations().evaluator().length_scale();
+  scale_.length = motion_.length_scale();
   scale_.set_masses(motion_.equations().masses().mass);
 }
 
@@ -41,8 +41,9 @@ bool Adams::start(double t, std::span<const double> y) {
   if (!motion_.derivative(t_, Side::after, y_, slope_)) return false;
   curve_places_ = motion_.equations().evaluator().curve_places();
   const std::span<const double> state(y_), k(slope_);
-  scale_.observe(t_, 0, motion_.qd(state).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
-                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
+  scale_.observe(t_, 0, motion_.q(state).first(motion_.moving()), motion_.qd(state).first(motion_.moving()),
+                 motion_.qd(k).first(motion_.moving()), motion_.equations().applied_forces(),
+                 motion_.equations().smallest_pivot_ratio());
   largest_ratio_ = 0;
   stepped_by_runge_kutta_ = false;
   observe_ratio();

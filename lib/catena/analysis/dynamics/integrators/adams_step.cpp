@@ -82,8 +82,9 @@ bool Adams::try_step(double h) {
   ++motion_.equations().evaluator().counters.steps;
   observe_ratio();
   const std::span<const double> y(y_), k(slope_);
-  scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
-                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
+  scale_.observe(t_, h, motion_.q(y).first(motion_.moving()), motion_.qd(y).first(motion_.moving()),
+                 motion_.qd(k).first(motion_.moving()), motion_.equations().applied_forces(),
+                 motion_.equations().smallest_pivot_ratio());
   if (!fixed) choose(h, errors, lower, above);
   return true;
 }

@@ -1,9 +1,10 @@
 // The sizes that errors of positions and velocities are compared with, so that one tolerance serves all coordinates.
 //
-//   positions    tolerance x L (lengths), tolerance x 1 rad (angles)
+//   positions    max(tolerance x L, 4 eps D) (lengths), tolerance x 1 rad (angles)
 //   velocities   tolerance x (min(V L, sqrt(2 E / m)) + |v|), tolerance x (min(V, sqrt(2 E / J)) + |omega|)
 //
-// L: the scene's length scale. V, in 1/s: the rate of the mechanism, by its velocities and by the time in which its
+// L: the scene's length scale. D: how far bodies have come from where they were given; places are known no better than
+// to rounding of that. V, in 1/s: the rate of the mechanism, by its velocities and by the time in which its
 // accelerations cause a displacement of L or 1 rad: max(|v|/L, |omega|, sqrt(|a|/L), sqrt(|alpha|)). An error of
 // velocity then counts as much as the error of position it grows into. V decreases again after a fast passage, but the
 // time scale 1/V grows no faster than time itself: where a mechanism rests for an instant its velocities keep a scale.
@@ -63,7 +64,8 @@ class ErrorScale {
   /// Of an error of position and of velocity v at coordinate c that count as much as the tolerance; the latter is zero
   /// where nothing has moved yet.
   double position_unit(std::size_t c, double h) const {
-    return (tolerance_ + h * h * rounding(c)) * (c % 3 == 2 ? 1 : length);
+    const double moved = h * h * rounding(c);
+    return c % 3 == 2 ? tolerance_ + moved : (place_tolerance_ + moved) * length;
   }
   double velocity_unit(std::size_t c, double h, double v) const {
     const double unit = c % 3 == 2 ? 1 : length;
@@ -99,10 +101,11 @@ class ErrorScale {
     return error;
   }
 
-  /// Records velocities and accelerations (three a body) at t, a time `step` after the last ones; 0: at a start.
-  /// Generalized forces `loads` and the smallest pivot ratio of the equations determine the rounding of accelerations.
-  void observe(double t, double step, std::span<const double> qd, std::span<const double> qdd,
-               std::span<const double> loads, double pivot_ratio) {
+  /// Records places, velocities and accelerations (three a body) at t, a time `step` after the last ones; 0: at a
+  /// start. Generalized forces `loads` and the smallest pivot ratio of the equations determine the rounding of
+  /// accelerations.
+  void observe(double t, double step, std::span<const double> q, std::span<const double> qd,
+               std::span<const double> qdd, std::span<const double> loads, double pivot_ratio) {
     rate_ /= 1 + std::abs(step) * rate_;
     measure(qd, qdd);
     force_ = acceleration_ = 0;
@@ -117,6 +120,10 @@ class ErrorScale {
     radians_ += rate_ * std::abs(step);
     const double part = std::min(1.0, brief_run / (radians_ + rate_ * std::max(horizon - t, 0.0)));
     tolerance_ = std::max(step_tolerance * part * part, least_tolerance);
+    double farthest = 0;
+    for (std::size_t c = 0; c + 2 < q.size(); c += 3)
+      farthest = std::max({farthest, std::abs(q[c]), std::abs(q[c + 1])});
+    place_tolerance_ = std::max(tolerance_, thresholds::few_roundings * farthest / length);
   }
 
  private:
@@ -150,6 +157,7 @@ class ErrorScale {
   static constexpr double work_part = 100;
   static constexpr double brief_run = 200, least_tolerance = 1e-15;
   double rate_ = 0, root_energy_ = 0, radians_ = 0, tolerance_ = 0;
+  double place_tolerance_ = 0;  // of lengths, in parts of L
   double condition_ = 1;
   double force_ = 0, acceleration_ = 0;         // N, and in units: largest of the loads and of what they would do alone
   std::vector<double> mass_, speed_, inverse_;  // speed_: of a coordinate that has 1 J; inverse_: units / s^2 a N

@@ -23,7 +23,8 @@ class Motion {
   Motion(EquationsOfMotion& equations, EnergyAccount* account)
       : equations_(equations),
         account_(account),
-        coordinates_(static_cast<std::size_t>(equations.plan().coordinates())) {}
+        coordinates_(static_cast<std::size_t>(equations.plan().coordinates())),
+        length_scale_(equations.evaluator().length_scale()) {}
 
   /// Entries of q, and of qd.
   std::size_t coordinates() const { return coordinates_; }
@@ -76,6 +77,10 @@ class Motion {
     departure_ = std::move(slope);
   }
 
+  /// What errors of places are compared with, m: the scene's, or another one where nothing in it gives a length.
+  double length_scale() const { return length_scale_; }
+  void set_length_scale(double length) { length_scale_ = length; }
+
   EquationsOfMotion& equations() const { return equations_; }
   /// Coordinates that can change: the first ones of q and of qd.
   std::size_t moving() const { return 3 * static_cast<std::size_t>(equations_.plan().moving); }
@@ -84,6 +89,7 @@ class Motion {
   EquationsOfMotion& equations_;
   EnergyAccount* account_;
   std::size_t coordinates_;
+  double length_scale_;
   double known_t_ = 0, known_for_ = -1;
   std::vector<double> known_;
   double departed_ = 0;

@@ -28,7 +28,7 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options)
   error_low_.resize(2 * motion_.coordinates());
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
-  scale_.length = motion_.equations().evaluator().length_scale();
+  scale_.length = motion_.length_scale();
   scale_.set_masses(motion_.equations().masses().mass);
   if (options.keeping == ConstraintKeeping::partition) {
     partition_ = std::make_unique<CoordinatePartition>(motion_.equations());
@@ -113,8 +113,9 @@ void RungeKutta::observe_ratio() { ratios_.start(motion_.equations().smallest_pi
 
 void RungeKutta::observe_rates() {
   const std::span<const double> y(y_), k(slope_);
-  scale_.observe(t_, t_ - t_before_, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
-                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
+  scale_.observe(t_, t_ - t_before_, motion_.q(y).first(motion_.moving()), motion_.qd(y).first(motion_.moving()),
+                 motion_.qd(k).first(motion_.moving()), motion_.equations().applied_forces(),
+                 motion_.equations().smallest_pivot_ratio());
 }
 
 bool RungeKutta::begin_showing() {
