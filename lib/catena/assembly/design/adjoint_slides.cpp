@@ -40,21 +40,32 @@ void seed_rate(Frame<DesignSeries>& f, int coordinate, std::size_t s) {
   f.s.dd.d[s] = 2 * f.c.d.v;
 }
 
-/// Calls add(coordinate, by_rate, derivative of the slide) for the coordinates of both bodies, up to `count`.
+/// Two bodies, of which the first `moving` ones of the plan move.
+struct SlidingPair {
+  std::array<int, 2> bodies;
+  int moving;
+  int body_of(int number) const { return bodies[number % poses < 3 ? 0 : 1]; }
+};
+
+/// Calls add(coordinate, by_rate, derivative of the slide) for the coordinates of the bodies that move, numbered as
+/// `poses` and `poses_and_rates` have them, up to `count`.
 template <class Add>
 void differentiate_slide(const Slide& slide, const detail::DesignFrames<Taylor<double>>& frames,
-                         const std::array<int, 2>& bodies, int count, Add&& add) {
-  for (int first = 0; first < count; first += parameters_at_once) {
+                         const SlidingPair& pair, int count, Add&& add) {
+  std::array<int, parameters_at_once> number{};
+  for (int next = 0; next < count;) {
     Frame<DesignSeries> i = detail::lifted(frames.i), j = detail::lifted(frames.j);
-    const int last = std::min(first + parameters_at_once, count);
-    for (int n = first; n < last; ++n) {
-      Frame<DesignSeries>& f = n % poses < 3 ? i : j;
-      (n < poses ? seed_pose : seed_rate)(f, n % 3, at(n - first));
+    std::size_t seeded = 0;
+    for (; next < count && seeded < number.size(); ++next) {
+      if (pair.body_of(next) >= pair.moving) continue;
+      (next < poses ? seed_pose : seed_rate)(next % poses < 3 ? i : j, next % 3, seeded);
+      number[seeded++] = next;
     }
+    if (seeded == 0) return;
     const DesignSeries w = slide.measure(i, j);
-    for (int n = first; n < last; ++n) {
-      const std::size_t c = at(3 * bodies[n % poses < 3 ? 0 : 1] + n % 3), s = at(n - first);
-      add(c, n >= poses, Taylor<double>{w.f.d[s], w.d.d[s], w.dd.d[s]});
+    for (std::size_t s = 0; s < seeded; ++s) {
+      const std::size_t c = at(3 * pair.body_of(number[s]) + number[s] % 3);
+      add(c, number[s] >= poses, Taylor<double>{w.f.d[s], w.d.d[s], w.dd.d[s]});
     }
   }
 }
@@ -72,7 +83,8 @@ void AdjointMechanism::add_slides_by_q(const AdjointWeights& weights, std::span<
     if (bend == 0 && rate == 0) continue;
     const auto frames =
         detail::design_frames<Series>(block, e, plan_->moving, origin_, [&](int body) { return motion_[at(body)]; });
-    differentiate_slide(list[at(block.entry[at(e)])].element, frames, {block.body_i[at(e)], block.body_j[at(e)]},
+    differentiate_slide(list[at(block.entry[at(e)])].element, frames,
+                        {{block.body_i[at(e)], block.body_j[at(e)]}, plan_->moving},
                         bend != 0 ? poses_and_rates : poses, [&](std::size_t c, bool by_rate, const Taylor<double>& w) {
                           if (by_rate)
                             by_qd[c] -= bend * w.dd;
@@ -95,7 +107,8 @@ void AdjointMechanism::add_slides_curvature(const AdjointWeights& weights, std::
     const double lambda = weights.lambda[at(block.row(e))];
     if (lambda == 0) continue;
     const auto frames = detail::design_frames<Series>(block, e, plan_->moving, origin_, along);
-    differentiate_slide(list[at(block.entry[at(e)])].element, frames, {block.body_i[at(e)], block.body_j[at(e)]}, poses,
+    differentiate_slide(list[at(block.entry[at(e)])].element, frames,
+                        {{block.body_i[at(e)], block.body_j[at(e)]}, plan_->moving}, poses,
                         [&](std::size_t c, bool, const Taylor<double>& w) { by_q[c] -= lambda * w.d; });
   }
 }

@@ -86,6 +86,17 @@ PlaceMotion PhaseEquations::motion(const DesignMechanism& mechanism, std::size_t
   return motion;
 }
 
+PlaceMotion PhaseEquations::motion_of_forces(const DesignMechanism& mechanism, const PlaceLaw& law) const {
+  PlaceMotion motion;
+  if (law.asks_gap()) {
+    const Taylor<DesignScalar> gap = mechanism.measure(law.point.element);
+    motion.gap = gap.f;
+    motion.gap_rate = gap.d;
+  }
+  if (law.asks_slip()) motion.slip = mechanism.measure(law.point.slide).d;
+  return motion;
+}
+
 PhaseEquations::EndRate PhaseEquations::rate_of_end(const DesignMechanism& mechanism, const DesignPlace& place,
                                                     const WatchedPlace& watched, double speed) const {
   const ContactPoint& point = contacts_.points[watched.place];
@@ -110,8 +121,8 @@ PhaseEquations::EndRate PhaseEquations::rate_of_end(const DesignMechanism& mecha
 }
 
 DesignScalar PhaseEquations::normal(const Design& design, std::size_t k, std::span<const DesignScalar> lambda) const {
-  const bool compliant = contacts_.points[k].kind == ContactKind::compliant;
-  return law(design.places[k], k).normal(compliant ? motion(design.mechanism, k) : PlaceMotion{}, lambda);
+  const PlaceLaw there = law(design.places[k], k);
+  return there.normal(motion_of_forces(design.mechanism, there), lambda);
 }
 
 // Multipliers of compliant places and of their friction, which follow from the state; the friction that does not.
@@ -125,8 +136,8 @@ std::vector<PhaseEquations::Coupled> PhaseEquations::find_known(const Design& de
     const PlaceLaw law = this->law(design.places[k], k);
     const bool compliant = law.point.kind == ContactKind::compliant, slides = law.slides();
     if (!compliant && !slides) continue;
-    if (!std::exchange(is_there, true)) design.mechanism.set_state(q, qd);
-    const PlaceMotion now = motion(design.mechanism, k);
+    if (law.asks_motion() && !std::exchange(is_there, true)) design.mechanism.set_state(q, qd);
+    const PlaceMotion now = motion_of_forces(design.mechanism, law);
     const DesignScalar pressing = compliant ? law.compliant_force(now) : DesignScalar();
     if (compliant) lambda[at(law.gap_row)] = -pressing / law.row_factor(now.gap);
     if (!slides) continue;
@@ -166,8 +177,8 @@ bool PhaseEquations::accelerate(const Design& design, std::span<const DesignScal
   for (const int c : plan().coordinate) qdd[at(c)] = DesignScalar(f_[at(c)]);
   for (std::size_t r = 0; r < b_.size(); ++r) lambda[r] += DesignScalar(b_[r]);
   for (std::size_t l = 0; l < coupled.size(); ++l) lambda[at(coupled[l].slide_row)] = DesignScalar(-sizes_[l]);
-  mechanism.set_state(q, qd, qdd);
   if (design.count == 0) return true;
+  mechanism.set_state(q, qd, qdd);
   // The residual's derivatives at these values.
   mechanism.rows(rows_);
   mechanism.applied_forces(loads_);

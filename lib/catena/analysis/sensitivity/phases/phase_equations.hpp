@@ -56,6 +56,8 @@ class PhaseEquations {
   /// What place k does now, by these numbers of it, and what its forces follow from, at the mechanism's state.
   PlaceLaw law(const DesignPlace& place, std::size_t k) const;
   PlaceMotion motion(const DesignMechanism& mechanism, std::size_t k) const;
+  /// The same of what its forces ask for alone: where nothing is asked the mechanism may be anywhere.
+  PlaceMotion motion_of_forces(const DesignMechanism& mechanism, const PlaceLaw& law) const;
   /// How fast what ends a phase changes, where the state shows it; nothing where it follows from forces. `speed`: the
   /// fastest of the motion (contact_loads.hpp).
   struct EndRate {
@@ -73,7 +75,8 @@ class PhaseEquations {
   /// Factors for the equations that hold, at this place.
   bool factorize(double t, Side side, std::span<const DesignScalar> q, const DesignMechanism& masses);
   /// qdd and lambda with derivatives at q, qd, where the evaluator is factored; the mechanism is at the time of the
-  /// factors, and at this state then. Values come in plain numbers; without parameters they are all that is found.
+  /// factors, and at this state then. Values come in plain numbers; without parameters they are all that is found, and
+  /// the mechanism's state is not defined.
   bool accelerate(const Design& design, std::span<const DesignScalar> q, std::span<const DesignScalar> qd,
                   std::span<DesignScalar> qdd, std::span<DesignScalar> lambda);
   /// What contacts do at the state of the last accelerate().

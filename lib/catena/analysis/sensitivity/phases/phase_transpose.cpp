@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/base/at.hpp"
@@ -116,8 +117,8 @@ bool PhaseTranspose::find_terms(const Point& point) {
     const PlaceLaw law = equations_.law(places_[k], k);
     const bool compliant = law.point.kind == ContactKind::compliant;
     if (!law.state.closed || (!compliant && !law.slides())) continue;
-    if (!std::exchange(is_there, true)) set_state(plain_, point);
-    const PlaceMotion motion = bare(equations_.motion(plain_, k));
+    if (law.asks_motion() && !std::exchange(is_there, true)) set_state(plain_, point);
+    const PlaceMotion motion = bare(equations_.motion_of_forces(plain_, law));
     if (compliant) terms_.push_back(Term{law.gap_row, k, false, 0, motion});
     if (law.slides()) terms_.push_back(Term{law.slide_row, k, true, 0, motion});
   }
@@ -228,10 +229,13 @@ PhaseTranspose::ByParameter PhaseTranspose::by_parameters(const Point& point, co
   ByParameter sum = adjoint_.by_parameters(group.mechanism, group.reached, weights, point.qdd);
   const bool known_act = std::any_of(terms_.begin(), terms_.end(), [](const Term& term) { return term.nu != 0; });
   if (!known_act) return sum;
-  set_state(group.mechanism, point);
+  bool is_there = false;
   take_multipliers(point);
   for (const Term& term : terms_) {
-    const PlaceMotion motion = equations_.motion(group.mechanism, term.place);
+    if (term.nu == 0) continue;
+    const PlaceLaw law = equations_.law(group.places[term.place], term.place);
+    if (law.asks_motion() && !std::exchange(is_there, true)) set_state(group.mechanism, point);
+    const PlaceMotion motion = equations_.motion_of_forces(group.mechanism, law);
     const DesignScalar value = known(term, group.places[term.place], motion);
     for (std::size_t p = 0; p < sum.size(); ++p) sum[p] += term.nu * value.d[p];
   }

@@ -35,6 +35,11 @@ struct PlaceLaw {
     return point.has_friction() && state.closed && point.mu != 0 && (!point.is_exact() || state.direction != 0);
   }
 
+  /// Which parts of its motion its forces follow from.
+  bool asks_gap() const { return point.kind == ContactKind::compliant; }
+  bool asks_slip() const { return slides() && !point.is_exact(); }
+  bool asks_motion() const { return asks_gap() || asks_slip(); }
+
   DesignScalar compliant_force(const PlaceMotion& motion) const;
   /// The sizes of its terms together.
   double compliant_size(const PlaceMotion& motion) const;
