@@ -37,6 +37,30 @@ double number(const TextRun& run, const std::string& name, const std::string& va
   return std::nan("");
 }
 
+// A block with the speed 2 slides for 0.4 s: mu m g (v t - mu g t^2/2) is lost. That has no derivative yet.
+TEST(Optimise, GoesOnByValuesWhereDerivativesAreMissing) {
+  for (const char* more : {"", R"(, "subject_to": ["=lost >= 2"])", R"(, "solver": "slsqp")"}) {
+    SCOPED_TRACE(more);
+    const TextRun run = run_text(std::string(R"({"catena": 1, "gravity": [0, -10],
+      "parameters": {"mu": {"value": 0.2, "min": 0.05, "max": 0.5}},
+      "bodies": {"block": {"mass": 2, "particle": true, "velocity": [2, 0]}},
+      "forces": [{"type": "contact", "i": "ground", "j": "block", "curve": {"line": {"point": [0, 0], "axis": [1, 0]}},
+                  "mu": "mu"}],
+      "analyses": [{"type": "optimise", "of": {"type": "dynamics", "until": 0.4, "measures":
+        {"lost": {"final": "energy.dissipated"}}}, "variables": {"mu": {}}, "minimise": "=(lost - 2.5)^2")") +
+                                 more + "}]}");
+    if (std::string(more).find("solver") != std::string::npos) {
+      EXPECT_EQ(run.analysis().report.status, Status::refused);
+      continue;
+    }
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    // 20 mu (0.8 - 0.8 mu) = 2.5
+    EXPECT_NEAR(number(run, "variables", "mu"), (1 - std::sqrt(1 - 4 * 2.5 / 16)) / 2, 1e-4);
+    EXPECT_EQ(field<std::string>(run, "solver"), *more ? "cobyla" : "bobyqa");
+    EXPECT_FALSE(run.analysis().report.warnings.empty());
+  }
+}
+
 TEST(Optimise, FindsTheCrankOfAStroke) {
   const TextRun run = run_text(slider(R"("variables": {"r": {}}, "minimise": "=(stroke - 0.5)^2")"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;

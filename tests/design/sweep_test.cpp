@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "catena/analysis/design/sweep_plan.hpp"
 #include "scene/run_text.hpp"
@@ -61,14 +62,20 @@ TEST(SweepPlan, SamplesHaveTheirDistribution) {
   normal.kind = SweepRange::Kind::normal;
   normal.first = 3;
   normal.second = 0.5;
+  SweepRange uniform;
+  uniform.kind = SweepRange::Kind::uniform;
+  uniform.first = -1;
+  uniform.second = 4;
   for (const SweepKind kind : {SweepKind::sobol, SweepKind::latin, SweepKind::random}) {
-    const auto all = designs({{normal, list({-1, 4})}, kind, 20000, 7});
+    const auto all = designs({{normal, uniform, list({1, 2, 5})}, kind, 20000, 7});
     double mean = 0, square = 0, least = 9, most = -9;
+    std::map<double, int> drawn;
     for (const auto& d : all) {
       mean += d[0] / 20000;
       square += (d[0] - 3) * (d[0] - 3) / 20000;
       least = std::min(least, d[1]);
       most = std::max(most, d[1]);
+      ++drawn[d[2]];
     }
     // Four deviations of the mean, and of the mean square, of independent samples.
     EXPECT_NEAR(mean, 3, 4 * 0.5 / std::sqrt(20000.0));
@@ -76,6 +83,10 @@ TEST(SweepPlan, SamplesHaveTheirDistribution) {
     EXPECT_GT(least, -1);
     EXPECT_LT(most, 4);
     EXPECT_LT(least, -0.99);
+    // Of a list its values alone, each a third of the time.
+    EXPECT_EQ(drawn.size(), 3U);
+    for (const double value : {1.0, 2.0, 5.0})
+      EXPECT_NEAR(drawn[value], 20000 / 3.0, 4 * std::sqrt(20000 * 2 / 9.0)) << value;
   }
 }
 

@@ -48,6 +48,9 @@ const BadScene analyses[] = {
        {"count": §"3 mm", "events": [{"when": "crank.angle"}]}]})"),
      "must be a"},
     {"EventWithout", analysis(R"({"type": "dynamics", "events": [§{"name": "a"}]})"), "needs \"when\""},
+    {"RattleWithoutAStep", analysis(R"({"type": "dynamics", "until": 1, "method": §"rattle"})"), "give \"step\""},
+    {"RhoAboveOne", analysis(R"({"type": "dynamics", "until": 1, "method": "alpha", "rho": §1.5})"),
+     "0 ... 1; it is 1.5"},
     {"EventColumn", analysis(R"({"type": "dynamics", "events": [{"when": §"crank.q"}]})"), "unknown column"},
 };
 

@@ -60,6 +60,18 @@ TEST(Explain, EveryExampleOfAnElementIsASoundScene) {
   }
 }
 
+TEST(Explain, EveryExampleOfAnAnalysisIsASoundOne) {
+  for (const AnalysisDescription& type : analysis_descriptions()) {
+    EXPECT_NE(explain(type.type).value_or("").find(example_of(type)), std::string::npos) << type.type;
+    Diagnostics diagnostics;
+    const std::string text = R"({"catena": 1, "parameters": {"P": 2}, "bodies": {"rod": {"points": {"from": [0, 0]}}},
+      "analyses": [)" + example_of(type) +
+                             "]}";
+    EXPECT_TRUE(read_scene(SourceText("example", text), diagnostics)) << type.type;
+    EXPECT_TRUE(diagnostics.ok()) << diagnostics.text();
+  }
+}
+
 TEST(Schema, IsTheFileInData) {
   std::ifstream in(CATENA_DATA_DIR "/schema/catena-1.schema.json", std::ios::binary);
   const std::string file{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

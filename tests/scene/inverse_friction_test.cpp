@@ -44,6 +44,31 @@ TEST(InverseFriction, OfAPinIsItsForce) {
   }
 }
 
+// A wheel on its centre that swings to and fro: its pin carries the weight, and what is lost is torque times way,
+// though the torque turns round between the rows, at pi/8 and every pi/4 from there.
+TEST(InverseFriction, IsSummedUpAcrossReversals) {
+  for (const char* vs : {"", R"(, "vs": 5e-5)"}) {
+    for (const char* rows : {R"("at": [0.5, 2])", R"("until": 2, "every": 0.3)"}) {
+      SCOPED_TRACE(std::string(vs) + rows);
+      const TextRun run = run_text(fmt::format(R"({{"catena": 1, "gravity": [0, -9.81],
+        "bodies": {{"wheel": {{"mass": 4, "inertia": 0.3}}}},
+        "constraints": [{{"type": "revolute", "name": "pin", "i": "ground", "j": "wheel"}}],
+        "drivers": [{{"type": "absolute_angle", "name": "drive", "i": "wheel",
+                      "value": {{"harmonic": {{"amplitude": 1, "omega": 4}}}}}}],
+        "forces": [{{"type": "friction", "joint": "pin", "mu": 0.2, "radius": 0.05{}}}],
+        "outputs": ["energy.dissipated", "drive.work"], "analyses": [{{"type": "inverse_dynamics", {}}}]}})",
+                                               vs, rows));
+      ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+      // Of tanh(v / vs), v = 0.05 omega, (vs/0.05)^2 pi^2/24 / 16 rad of the way are missing at each side of a
+      // reversal.
+      const double torque = 0.2 * 4 * 9.81 * 0.05, way = 5 + (1 - std::abs(std::sin(8.0)));
+      EXPECT_NEAR(run.last("energy.dissipated"), torque * way, (*vs ? 1e-6 : 1e-8) * torque * way);
+      EXPECT_NEAR(run.last("drive.work"), torque * way + 0.5 * 0.3 * (std::pow(4 * std::cos(8.0), 2) - 16),
+                  (*vs ? 1e-6 : 1e-8) * torque * way);
+    }
+  }
+}
+
 // A block pushed at the height h over a guide of the length l: N = m g + 2 |F h|/l and F = m a + mu N, so that
 // F (1 - 2 mu h/l) = m (a + mu g).
 std::string pushed_block(double mu, double h, double speed) {

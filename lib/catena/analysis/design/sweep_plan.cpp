@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace catena {
@@ -48,8 +49,9 @@ double value_at(const SweepRange& range, double u) {
     case SweepRange::Kind::list:
       break;
   }
-  const auto [least, greatest] = std::minmax_element(range.values.begin(), range.values.end());
-  return *least + u * (*greatest - *least);
+  // Rounding may bring u n to n.
+  const auto n = static_cast<double>(range.values.size());
+  return range.values[static_cast<std::size_t>(std::min(std::floor(u * n), n - 1))];
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 //   together        the k-th value of every parameter; a single value holds for all
 //   sobol, latin, random     points of the unit cube, brought to each parameter's range or distribution
 //
-// Design k depends on the plan alone, not on the order of calls. A list, or `from ... to` in `count` equal steps,
-// counts as a range from its least to its greatest value in a sampled design. A normal distribution is cut nowhere.
+// Design k depends on the plan alone, not on the order of calls. In a sampled design every value of a list is drawn as
+// often as any other, and `from ... to` in `count` equal steps counts as a range. A normal distribution is cut nowhere.
 // Source: base/sampling.hpp. Units: those of the parameters.
 #pragma once
 

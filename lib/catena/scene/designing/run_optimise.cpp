@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "catena/scene/designing/design_runs.hpp"
 #include "catena/scene/designing/measured_design.hpp"
@@ -102,10 +103,25 @@ Status status_of(DesignEnd end) {
   }
 }
 
+/// Whether no design had the derivatives that the method searches by; `doubts`: those that were missing.
+bool lacks_derivatives(const DesignOutcome& outcome, const std::vector<std::string>& doubts) {
+  return outcome.end == DesignEnd::failed && outcome.failed.contains("no_derivative") && !doubts.empty();
+}
+
+/// One search, whose designs are analysed by `runs`.
+DesignOutcome search(DesignProblem& problem, DesignRuns& runs, const DesignOptions& options) {
+  problem.begin_search = [&runs] {
+    return [&runs, record = AdjointRecord()](std::span<const double> x, bool gradients) mutable {
+      return runs.evaluate(x, gradients, record);
+    };
+  };
+  return optimise_design(problem, options);
+}
+
 /// `doubts`: derivatives that were missing.
 Report report_of(const DesignOutcome& outcome, int max_evaluations, const std::vector<std::string>& doubts) {
   Report report;
-  if (outcome.end == DesignEnd::failed && outcome.failed.contains("no_derivative") && !doubts.empty()) {
+  if (lacks_derivatives(outcome, doubts)) {
     report.status = Status::refused;
     report.message = doubts.front() +
                      "; the solver searches by derivatives: take \"solver\": \"bobyqa\", which needs none, or measure "
@@ -184,7 +200,6 @@ void run_optimise(AnalysisContext& context, AnalysisResult& result) {
                     ipopt ? "Ipopt" : "NLopt", ipopt ? "IPOPT" : "NLOPT", names[static_cast<std::size_t>(method)],
                     ipopt ? "leave \"solver\" out, or take \"slsqp\" or \"mma\"" : "\"ipopt\" may be built in"));
   }
-  DesignRuns runs(context, !uses_gradients(methods[task.word("solver")]));
   std::vector<std::string> variables;
   std::vector<ColumnInfo> info;
   DesignProblem problem;
@@ -200,11 +215,6 @@ void run_optimise(AnalysisContext& context, AnalysisResult& result) {
     info.push_back({relation.text, UnitKind::own});
     (relation.equality ? problem.equations : problem.inequalities) += 1;
   }
-  problem.begin_search = [&runs] {
-    return [&runs, record = AdjointRecord()](std::span<const double> x, bool gradients) mutable {
-      return runs.evaluate(x, gradients, record);
-    };
-  };
   context.rows.begin(info);
   DesignOptions options = options_of(context);
   std::int64_t rows = 0;
@@ -215,14 +225,26 @@ void run_optimise(AnalysisContext& context, AnalysisResult& result) {
     context.rows.row(row);
     ++rows;
   };
-  const DesignOutcome outcome = optimise_design(problem, options);
-  static_cast<Report&>(result.report) = report_of(outcome, options.max_evaluations, runs.doubts());
-  for (const std::string& doubt : runs.doubts()) result.report.warnings.push_back(doubt);
+  auto runs = std::make_unique<DesignRuns>(context, !uses_gradients(options.method));
+  DesignOutcome outcome = search(problem, *runs, options);
+  const std::vector<std::string> doubts = runs->doubts();
+  const bool is_automatic = task.word("solver") == 0;
+  if (is_automatic && lacks_derivatives(outcome, doubts) && outcome.evaluations < options.max_evaluations) {
+    options.method = task.goal.relations.empty() ? MinimiserMethod::bobyqa : MinimiserMethod::cobyla;
+    options.max_evaluations -= outcome.evaluations;
+    const int before = outcome.evaluations;
+    runs = std::make_unique<DesignRuns>(context, true);
+    outcome = search(problem, *runs, options);
+    outcome.evaluations += before;
+    options.max_evaluations += before;
+  }
+  static_cast<Report&>(result.report) = report_of(outcome, options.max_evaluations, doubts);
+  for (const std::string& doubt : doubts) result.report.warnings.push_back(doubt);
   result.has_rows = true;
   result.columns = std::move(info);
   result.rows = rows;
   add_fields(result, task.goal, outcome, variables, options.method);
-  show_designs(context, runs, problem.start, outcome.x, rows);
+  show_designs(context, *runs, problem.start, outcome.x, rows);
   for (std::size_t v = 0; v < outcome.x.size(); ++v)
     context.values_at_end.push_back({task.goal.variables[v].parameter, outcome.x[v]});
 }

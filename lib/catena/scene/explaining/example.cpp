@@ -11,6 +11,24 @@ std::string quantity(UnitKind kind) {
   return all.substr(0, all.find(" or "));
 }
 
+/// What an analysis needs for this key.
+std::string value_of_key(const AnalysisKey& key) {
+  switch (key.kind) {
+    case KeyKind::parameter:
+      return "\"P\"";
+    case KeyKind::analysis:
+      return R"({"type": "kinematics", "until": 2, "measures": {"reach": {"max": "rod.from.x"}}})";
+    case KeyKind::names:
+      return R"(["P"])";
+    case KeyKind::variables:
+      return R"({"P": {"min": 1, "max": 10}}, "minimise": "reach")";
+    case KeyKind::over:
+      return R"({"P": {"from": 1, "to": 10, "count": 4}})";
+    default:
+      return "10";
+  }
+}
+
 std::string value_of_field(const FieldDescription& field) {
   switch (field.kind) {
     case FieldKind::point:
@@ -76,7 +94,7 @@ std::string example_of(const AnalysisDescription& type) {
     add_member(out, "every", "0.01");
   }
   for (const AnalysisKey& key : type.keys) {
-    if (key.required) add_member(out, key.name, key.kind == KeyKind::parameter ? "\"P\"" : "10");
+    if (key.required) add_member(out, key.name, value_of_key(key));
   }
   return out + "}";
 }

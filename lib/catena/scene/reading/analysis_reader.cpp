@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "catena/analysis/dynamics/dynamics_options.hpp"
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/numbers/evaluation.hpp"
 #include "catena/scene/reading/own_column_reader.hpp"
@@ -204,6 +205,16 @@ void AnalysisReader::check_times(const std::vector<JsonValue>& values, const Ana
   }
 }
 
+void AnalysisReader::check_method(const JsonValue& object, const AnalysisTask& task) {
+  const bool is_rattle = task.word("method") == static_cast<int>(IntegrationMethod::rattle);
+  if (is_rattle && !(task.number("step", 0) > 0))
+    error(object.find("method"),
+          "method \"rattle\" makes steps of one length, which its accuracy follows from: give \"step\", s");
+  if (const double rho = task.number("rho", 0); rho > 1)
+    error(object.find("rho"),
+          fmt::format("\"rho\" of dynamics is what a step leaves of a fast vibration, 0 ... 1; it is {}", rho));
+}
+
 std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const JsonValue& scene_outputs) {
   if (!object.is(JsonKind::object)) {
     error(object, fmt::format("an analysis must be an object {{...}}; this is {}", describe(object.kind())));
@@ -245,6 +256,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   task.varying = std::move(varying_);
   task.from_initial = task.word("from") == 1;
   check_times(values, task);
+  if (task.type() == "dynamics") check_method(object, task);
   if (task.type() == "optimise") check_design(object, task);
   if (task.type() == "sweep") check_sweep(object, task);
   if (!own_outputs && !has_rows_of_inner && scene_outputs && task.description->find("outputs")) {

@@ -70,6 +70,8 @@ class AnalysisReader {
   void check_sweep(const JsonValue& object, AnalysisTask& task);
   void read_event(const JsonValue& object, AnalysisTask& task);
   EventRequest::Impulse read_impulse(const JsonValue& object, std::size_t event);
+  /// What a method of dynamics wants.
+  void check_method(const JsonValue& object, const AnalysisTask& task);
   void check_times(const std::vector<JsonValue>& values, const AnalysisTask& task);
   void error(const JsonValue& value, std::string message) { report(value, std::move(message), diagnostics_); }
 
