@@ -176,8 +176,10 @@ const char* Equations::rope_trouble(const Pose& pose, int element) const {
     return wraps.trouble(rope_slack<double>(list, record.index, frame) < 0);
   }
   const auto& head = std::get<std::vector<ElementEntry<Rope<double>, double>>>(model_->constraints)[at(record.index)];
+  const double slack = measure(pose, element, {}, {}).value;
+  if (head.element.k > 0) return wraps.trouble(slack < 0);
   const bool may_hold = plan_->element_row[at(element)] >= 0;
-  return wraps.trouble(may_hold && measure(pose, element, {}, {}).value < taut * head.element.length);
+  return wraps.trouble(may_hold && slack < taut * head.element.length);
 }
 
 }  // namespace catena

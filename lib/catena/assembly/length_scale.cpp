@@ -7,6 +7,7 @@
 #include "catena/assembly/equations.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/elastic_gaps.hpp"
 #include "catena/model/given_frames.hpp"
 #include "catena/model/model_part.hpp"
 
@@ -171,15 +172,22 @@ std::vector<double> Equations::attachment_radii(double* mean) const {
     }
   };
   std::vector<Points> held(at(plan_->bodies)), forced(at(plan_->bodies));
+  std::vector<char> on_curve(held.size(), 0);
   Points all;
   for_each_list(model_->constraints, [&](const auto& list, int) {
     for (const auto& entry : list) {
+      const bool pulls = is_elastic_gap(*model_, entry);
       visit_points(entry, [&](const Vec2<double>& local, int body) {
         if (body < 0) return;
         const double square = squared_norm(local);
-        held[at(plan_->plan_body[at(body)])].add(square);
-        all.add(square);
+        (pulls ? forced : held)[at(plan_->plan_body[at(body)])].add(square);
+        if (!pulls) all.add(square);
       });
+      if constexpr (SearchesCurve<ElementOf<decltype(list)>>) {
+        for (const int body : {entry.i, entry.j}) {
+          if (body >= 0) on_curve[at(plan_->plan_body[at(body)])] = 1;
+        }
+      }
     }
   });
   for_each_list(model_->forces, [&](const auto& list, int) {
@@ -197,14 +205,22 @@ std::vector<double> Equations::attachment_radii(double* mean) const {
     lacks = lacks || (radius[b] == 0 && !model_->bodies[at(plan_->model_body[b])].particle);
   }
   if (lacks) {
-    for (const std::vector<int>& group : separate_groups(*model_)) {
+    const std::vector<std::vector<int>> groups = separate_groups(*model_);
+    for (const std::vector<int>& group : groups) {
       Points own;
       for (const int body : group) {
         const Points& of = held[at(plan_->plan_body[at(body)])];
         own.sum += of.sum;
         own.count += of.count;
       }
-      if (own.sum == 0) continue;
+      if (own.sum == 0) {
+        // Held by curves alone: as where nothing stands beside it.
+        const bool curves = std::any_of(group.begin(), group.end(),
+                                        [&](int body) { return on_curve[at(plan_->plan_body[at(body)])] != 0; });
+        if (curves && groups.size() > 1)
+          own = {.sum = length_without_joints(part_of(*model_, group).model), .count = 1};
+        if (own.sum == 0) continue;
+      }
       for (const int body : group) {
         double& r = radius[at(plan_->plan_body[at(body)])];
         if (r == 0) r = own.sum / own.count;

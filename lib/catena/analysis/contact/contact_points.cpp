@@ -22,6 +22,12 @@ ContactPoint point_of(const E& element, int number) {
     point.exponent = element.exponent;
     if (point.k > 0) point.kind = ContactKind::compliant;
   }
+  // A cable, or rope, whose stiffness is not that of a force (model/elastic_gaps.hpp).
+  if constexpr (
+      !requires { element.exponent; } && requires { element.k; }) {
+    point.k = element.k;
+    if (point.k > 0) point.kind = ContactKind::compliant;
+  }
   if constexpr (requires { element.mu; }) {
     point.mu = element.mu;
     point.mu_static = element.mu_static >= 0 ? element.mu_static : element.mu;

@@ -11,6 +11,7 @@
 #include "catena/analysis/pose/whole_turns.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/elastic_gaps.hpp"
 
 namespace catena {
 namespace {
@@ -52,10 +53,12 @@ std::vector<DesignScalar> squared_radii(const DesignModel& model, const Plan& pl
   std::vector<AttachedPoints> points(at(plan.bodies));
   for_each_list(model.constraints, [&](const auto& list, int) {
     for (const auto& entry : list) {
+      const bool pulls = is_elastic_gap(model, entry);
       visit_design_points(entry, [&](const Vec2<DesignScalar>& local, int body) {
         if (body < 0) return;
-        points[at(plan.plan_body[at(body)])].held += squared_norm(local);
-        ++points[at(plan.plan_body[at(body)])].holding;
+        AttachedPoints& of = points[at(plan.plan_body[at(body)])];
+        (pulls ? of.forced : of.held) += squared_norm(local);
+        ++(pulls ? of.forcing : of.holding);
       });
     }
   });

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "catena/model/elastic_gaps.hpp"
+
 namespace catena {
 namespace {
 
@@ -52,6 +54,7 @@ void EventEntries::add(const AnalysisTask& task, std::span<const EventRecord> re
 
 void EventEntries::add(std::span<const ContactEvent> events) {
   for (const ContactEvent& event : events) {
+    if (is_elastic_gap(model_, event.element)) continue;  // followed for its derivatives alone
     events_.push_back(
         {event.t, {{"name", model_.element_name(event.element)}, {"kind", std::string(event.kind)}, {"t", event.t}}});
   }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "catena/scene/models/design_events.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
@@ -94,6 +95,25 @@ void set_field_gradient(const AnalysisContext& context, AnalysisResult& result, 
       measure.gradient = gradient;
       measure.trouble = trouble;
       if (!trouble.empty()) result.report.warnings.push_back(fmt::format("measure \"{}\": {}", measure.name, trouble));
+    }
+  }
+}
+
+void set_event_gradients(const AnalysisContext& context, AnalysisResult& result,
+                         const std::map<double, std::vector<double>>& instants) {
+  for (const PlacedMeasure& placed : context.task.measures) {
+    if (!reads_events(placed) || placed.request.part != "t") continue;
+    for (const MeasureResult& measure : result.measures) {
+      if (measure.name != placed.request.name || !measure.value) continue;
+      const auto found = instants.find(*measure.value);
+      std::vector<double> gradient(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+      std::string trouble;
+      if (found == instants.end())
+        trouble = fmt::format("the derivative of the instant t = {:.9g} s is not known", *measure.value);
+      else
+        gradient = found->second;
+      set_field_gradient(context, result, placed.request.field, placed.request.number, gradient, trouble, "t");
+      break;
     }
   }
 }

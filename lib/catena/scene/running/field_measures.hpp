@@ -1,6 +1,7 @@
 // Measures of what an analysis reports beside its rows: an energy, a critical load, an optimum.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,5 +18,10 @@ void add_field_measures(const AnalysisContext& context, AnalysisResult& result);
 void set_field_gradient(const AnalysisContext& context, AnalysisResult& result, std::string_view field, int number,
                         const std::vector<double>& gradient, const std::string& trouble = {},
                         std::string_view part = "value");
+
+/// Gradients of the measures of instants in the field "events", after add_field_measures(). `instants`: how
+/// they move with the parameters, by instant.
+void set_event_gradients(const AnalysisContext& context, AnalysisResult& result,
+                         const std::map<double, std::vector<double>>& instants);
 
 }  // namespace catena

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <utility>
 
 #include "catena/analysis/accuracy/compared_rows.hpp"
 #include "catena/analysis/accuracy/motion_digits.hpp"
@@ -15,6 +15,7 @@
 #include "catena/analysis/dynamics/paces.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
+#include "catena/model/elastic_gaps.hpp"
 #include "catena/model/rope_routes.hpp"
 #include "catena/scene/models/design_events.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -37,31 +38,6 @@ DynamicsOptions options_of(const AnalysisTask& task) {
   options.rho = task.number("rho", options.rho);
   options.max_steps = static_cast<std::int64_t>(task.number("max_steps", static_cast<double>(options.max_steps)));
   return options;
-}
-
-/// One object a kind of coordinate.
-std::vector<FieldRecord> records_of(const EstimatedError& error, const Model& model) {
-  struct Kind {
-    const char *quantity, *unit;
-    const ErrorOfMotion& of;
-  };
-  const Kind kinds[] = {{"position", "m", error.position},
-                        {"angle", "rad", error.angle},
-                        {"velocity", "m/s", error.velocity},
-                        {"angular velocity", "rad/s", error.angular_velocity}};
-  std::vector<FieldRecord> records;
-  for (const Kind& kind : kinds) {
-    FieldRecord record{{"quantity", std::string(kind.quantity)},
-                       {"error", kind.of.error},
-                       {"unit", std::string(kind.unit)},
-                       {"relative", kind.of.relative()}};
-    if (kind.of.body >= 0) {
-      record.emplace_back("body", std::string(model.body_name(kind.of.body)));
-      record.emplace_back("t", kind.of.t);
-    }
-    records.push_back(std::move(record));
-  }
-  return records;
 }
 
 class DynamicsTask {
@@ -107,6 +83,12 @@ class DynamicsTask {
   /// Whether instants of the motion itself are to be differentiated.
   bool has_phases() const;
   bool only_strikes() const;
+  /// Has elastic cables and ropes followed as places that press: derivatives ask for steps that end where one of them
+  /// becomes taut or slack.
+  void follow_kinks();
+  /// Whether one does, or may: of a motion that changes itself it is not asked.
+  bool passes_kinks() const;
+  DesignModels designs() const;
   /// Has the motion saved now and then; where it cannot be, `failure` says why.
   Pauses pauses(std::string& failure) const;
   void run_apart(const std::vector<std::vector<int>>& classes);
@@ -131,6 +113,8 @@ class DynamicsTask {
   bool estimates_;
   PlanOptions plan_;  // with which it runs
   std::shared_ptr<InstantRates> instants_ = std::make_shared<InstantRates>();
+  bool follows_kinks_ = false,
+       only_kinks_ = false;  // elastic cables and ropes are places that press; there are no others
 };
 
 std::string DynamicsTask::conflict() const {
@@ -190,7 +174,30 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan, 
     both.show_asked(*compared);
     rows.judge(std::move(compared));
   });
-  result_.fields.push_back({"estimated_error", records_of(both.error(), *model_)});
+  add_estimated_error(result_, both.error(), *model_);
+}
+
+bool DynamicsTask::passes_kinks() const {
+  if (changes_itself()) return true;
+  Dynamics motion(model_, plan_options(*model_, {}), used_options_);
+  motion.start_from(context_.state);
+  KinkLook look(*model_, context_.cancel);
+  static_cast<void>(motion.run(*grid_, {}, look));  // where it does not end well the run itself says so
+  return look.passed();
+}
+
+void DynamicsTask::follow_kinks() {
+  follows_kinks_ = true;
+  only_kinks_ = !std::exchange(touches_, true);
+  model_ = with_elastic_gaps(*model_);
+}
+
+DesignModels DynamicsTask::designs() const {
+  DesignModels models = designs_of(context_);
+  for (auto& model : models) {
+    if (follows_kinks_) model = with_elastic_gaps(*model);
+  }
+  return models;
 }
 
 void DynamicsTask::differentiate(AnalysisRows& rows, const Evaluator& evaluator) {
@@ -199,9 +206,9 @@ void DynamicsTask::differentiate(AnalysisRows& rows, const Evaluator& evaluator)
   const auto parameters = static_cast<int>(context_.design->names.size());
   const std::string_view obstacle = estimates_ ? "an estimate of the error is wanted" : "";
   if (goes_back(context_, obstacle))
-    rows.differentiate_back(std::make_unique<MotionMeasures>(evaluator, designs_of(context_), parameters, start));
+    rows.differentiate_back(std::make_unique<MotionMeasures>(evaluator, designs(), parameters, start));
   else
-    rows.differentiate(std::make_unique<MotionDerivatives>(evaluator, designs_of(context_), parameters, start));
+    rows.differentiate(std::make_unique<MotionDerivatives>(evaluator, designs(), parameters, start));
 }
 
 bool DynamicsTask::changes_itself() const {
@@ -234,7 +241,7 @@ void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysi
   const std::vector<double> values = context_.models->values(*context_.task.table, context_.seeds);
   std::vector<double> sizes;
   for (const int parameter : context_.design->parameters) sizes.push_back(values[static_cast<std::size_t>(parameter)]);
-  const DesignModels designs = designs_of(context_);
+  const DesignModels designs = this->designs();
   PhasedDesign design =
       phased_design(designs, sizes, context_.task,
                     context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters), model_,
@@ -299,7 +306,7 @@ void DynamicsTask::run_with_events_or_pauses() {
   entries.add(context_.task, analysis.records());
   entries.add(analysis.contact_events());
   entries.add(analysis.jolts());
-  entries.give(result_, !context_.task.events.empty() || analysis.has_contacts());
+  entries.give(result_, !context_.task.events.empty() || (analysis.has_contacts() && !only_kinks_));
 }
 
 /// Mechanisms that have nothing to do with each other, and differ in pace.
@@ -345,6 +352,7 @@ void DynamicsTask::run() {
 void DynamicsTask::run_on() {
   if (estimates_) used_options_ = finer_options(options_);
   if (context_.design) used_options_.may_turn_implicit = false;
+  if (context_.design && !estimates_ && may_have_elastic_gaps(*model_) && passes_kinks()) follow_kinks();
   const bool in_common = !context_.task.events.empty() || context_.checkpoint || follows_ropes();
   // A fixed step is the same for all; two runs that are compared must be divided alike.
   const bool looked_at = context_.design || !context_.task.measures.empty();
@@ -360,25 +368,6 @@ void DynamicsTask::run_on() {
   add_singular_points(result_, analysis.singular_points(), *model_);
   result_.fields.push_back({"method", names_of(analysis.methods())});
   add_jolts(analysis.jolts());
-}
-
-/// Gradients of the measures of instants in the field "events", after add_field_measures().
-void set_event_gradients(const AnalysisContext& context, AnalysisResult& result, const InstantRates& instants) {
-  for (const PlacedMeasure& placed : context.task.measures) {
-    if (!reads_events(placed) || placed.request.part != "t") continue;
-    for (const MeasureResult& measure : result.measures) {
-      if (measure.name != placed.request.name || !measure.value) continue;
-      const auto found = instants.find(*measure.value);
-      std::vector<double> gradient(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
-      std::string trouble;
-      if (found == instants.end())
-        trouble = fmt::format("the derivative of the instant t = {:.9g} s is not known", *measure.value);
-      else
-        gradient = found->second;
-      set_field_gradient(context, result, placed.request.field, placed.request.number, gradient, trouble, "t");
-      break;
-    }
-  }
 }
 
 }  // namespace

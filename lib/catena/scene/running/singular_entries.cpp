@@ -30,4 +30,28 @@ void add_singular_points(AnalysisResult& result, const std::vector<SingularPoint
   result.fields.push_back({"singular", std::move(records)});
 }
 
+void add_estimated_error(AnalysisResult& result, const EstimatedError& error, const Model& model) {
+  struct Kind {
+    const char *quantity, *unit;
+    const ErrorOfMotion& of;
+  };
+  const Kind kinds[] = {{"position", "m", error.position},
+                        {"angle", "rad", error.angle},
+                        {"velocity", "m/s", error.velocity},
+                        {"angular velocity", "rad/s", error.angular_velocity}};
+  std::vector<FieldRecord> records;
+  for (const Kind& kind : kinds) {
+    FieldRecord record{{"quantity", std::string(kind.quantity)},
+                       {"error", kind.of.error},
+                       {"unit", std::string(kind.unit)},
+                       {"relative", kind.of.relative()}};
+    if (kind.of.body >= 0) {
+      record.emplace_back("body", std::string(model.body_name(kind.of.body)));
+      record.emplace_back("t", kind.of.t);
+    }
+    records.push_back(std::move(record));
+  }
+  result.fields.push_back({"estimated_error", std::move(records)});
+}
+
 }  // namespace catena

@@ -9,11 +9,14 @@
 
 #include <vector>
 
+#include "catena/analysis/dynamics/error_estimate.hpp"
 #include "catena/analysis/pose/singular_point.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
 
 void add_singular_points(AnalysisResult& result, const std::vector<SingularPoint>& points, const Model& model);
+/// The field "estimated_error": one object a kind of coordinate.
+void add_estimated_error(AnalysisResult& result, const EstimatedError& error, const Model& model);
 
 }  // namespace catena

@@ -58,7 +58,8 @@ std::string CableKinks::passed(const MotionStretch& stretch) {
       if (known == -side && why.empty())
         why = fmt::format(
             "by t = {:.9g} s {} \"{}\" has become {}: its force bends there, at an instant that moves with the "
-            "parameters, and derivatives are not carried over that",
+            "parameters, and steps do not end there where a law of state reads a cable or the error is estimated: "
+            "derivatives are not carried over that",
             t, there->evaluator.model().element_type(id), there->evaluator.model().element_name(id),
             side > 0 ? "slack" : "taut");
       known = side;

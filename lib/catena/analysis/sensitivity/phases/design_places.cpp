@@ -56,6 +56,16 @@ void take_numbers(const E& element, DesignPlace& place) {
     place.c = element.c;
     place.exponent = element.exponent;
   }
+  if constexpr (
+      !requires { element.exponent; } && requires { element.k; }) {
+    place.k = element.k;
+    place.exponent = 1.0;
+  }
+  // Psi = (L^2 - |h|^2) / (2 L) is g (1 - g / (2 L)), g = L - |h|: that of a stop between bounds 2 L apart.
+  if constexpr (std::is_same_v<E, Cable<DesignScalar>>) {
+    place.has_range = true;
+    place.range = DesignScalar(2.0) * element.length;
+  }
   if constexpr (requires { element.mu; }) {
     place.mu = element.mu;
     place.mu_static = element.mu_static.v >= 0 ? element.mu_static : element.mu;

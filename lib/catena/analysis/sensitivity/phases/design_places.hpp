@@ -19,7 +19,7 @@ struct DesignPlace {
   DesignScalar restitution, k, c, exponent, mu, mu_static, smoothing, radius{1.0};
   DesignScalar half_length;  ///< of a guide
   bool has_length = false;   ///< its moment presses
-  DesignScalar range;        ///< between the bounds of a stop that has both
+  DesignScalar range;        ///< between the bounds of a stop that has both; of a cable 2 L
   bool has_range = false;
 };
 

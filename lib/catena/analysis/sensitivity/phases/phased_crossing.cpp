@@ -127,6 +127,13 @@ void PhasedDerivatives::end_crossing(std::size_t k, const std::vector<double>& r
   }
 }
 
+bool PhasedDerivatives::lacks() const {
+  return std::any_of(tracks_.begin(), tracks_.end(), [](const Track& track) {
+    const DesignScalar& y = track.end.front();
+    return std::any_of(y.d.begin(), y.d.end(), [](double d) { return std::isnan(d); });
+  });
+}
+
 bool PhasedDerivatives::cross(const MotionPhase& phase, const std::vector<double>& rate) {
   lose_.assign(tracks_.size(), {});
   std::vector<DesignVector> there, slope_before;
@@ -157,6 +164,8 @@ bool PhasedDerivatives::cross(const MotionPhase& phase, const std::vector<double
     find_anchors(k);
     check_rows(k, to_, false);
   }
+  // An instant that is not known may not matter.
+  if (!lacks()) lost_.clear();
   if (!lost_.empty()) lack_derivatives(lost_);
   return true;
 }

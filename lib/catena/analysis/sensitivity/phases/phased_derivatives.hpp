@@ -111,6 +111,8 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   std::vector<int> released_in(const VelocityJump& jump) const;
   void check_hits(const VelocityJump& jump, std::size_t group, const DesignVector& there);
   void end_crossing(std::size_t group, const std::vector<double>& rate, const DesignVector& slope_before, bool jumps);
+  /// Whether a parameter has no derivatives any more.
+  bool lacks() const;
   double rounding(std::size_t group, std::size_t p) const;
   static void move_along(DesignVector& y, const DesignVector& slope, std::span<const double> rate, double sign);
   DesignScalar end_value(std::size_t group, const WatchedPlace& watched);
