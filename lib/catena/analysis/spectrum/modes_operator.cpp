@@ -34,10 +34,10 @@ double decisive_component(const Plan& plan, std::span<const double> shape) {
   return std::abs(largest[1]) > 1e-9 * std::abs(largest[0]) ? largest[1] : largest[0];
 }
 
-void solve_to_rounding(StaticSystem& system, std::span<const double> weight, std::span<const double> given,
-                       std::span<double> x, std::span<double> correction) {
+double solve_to_rounding(StaticSystem& system, std::span<const double> weight, std::span<const double> given,
+                         std::span<double> x, std::span<double> correction) {
   const KktMatrix& matrix = system.matrix();
-  refine_to_rounding(
+  return refine_to_rounding(
       weight, given, x, correction,
       [&](std::span<double> v) { system.matrix().solve_unrefined(v, system.evaluator().counters); },
       [&](std::span<const double> v, std::span<double> y) { matrix.multiply(v, y); });

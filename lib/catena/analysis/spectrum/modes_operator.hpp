@@ -45,8 +45,9 @@ double decisive_component(const Plan& plan, std::span<const double> shape);
 
 /// Solves with the factors of the system's matrix for the right-hand side `given` = [columns; rows] and refines with
 /// the matrix itself until rounding ends the gain. `weight`: in which corrections are measured; `correction`: work.
-void solve_to_rounding(StaticSystem& system, std::span<const double> weight, std::span<const double> given,
-                       std::span<double> x, std::span<double> correction);
+/// Returns the last correction as a part of the solution.
+double solve_to_rounding(StaticSystem& system, std::span<const double> weight, std::span<const double> given,
+                         std::span<double> x, std::span<double> correction);
 
 /// Brings v (columns) into the null space of Phi_q with the factors of the system's matrix. `x`: work, columns + rows.
 void project_to_null_space(StaticSystem& system, std::span<double> v, std::span<double> x);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "catena/analysis/balance/refine_to_rounding.hpp"
+#include "catena/analysis/spectrum/modes_operator.hpp"
 
 namespace catena {
 namespace {
@@ -67,12 +67,7 @@ bool EquilibriumGradient::solve() {
 // Against the true matrix: the factors are of a regularised one.
 bool EquilibriumGradient::refine() {
   if (!system_.has_factors()) return false;
-  KktMatrix& matrix = system_.matrix();
-  std::vector<double> weight(at(plan().columns));
-  for (std::size_t c = 0; c < weight.size(); ++c) weight[c] = 1 / (matrix.inverse_arms()[c] * matrix.inverse_arms()[c]);
-  const auto solve_once = [&](std::span<double> b) { matrix.solve_unrefined(b, system_.evaluator().counters); };
-  const auto multiply = [&](std::span<const double> x, std::span<double> y) { matrix.multiply(x, y); };
-  return refine_to_rounding(weight, right_, x_, correction_, solve_once, multiply) <= rough;
+  return solve_to_rounding(system_, length_weights(system_), right_, x_, correction_) <= rough;
 }
 
 Frame<EquilibriumGradient::Along> EquilibriumGradient::frame(int plan_body) const {
