@@ -18,8 +18,11 @@ class Disturbance {
   /// Standard deviations of the few disturbed values: the largest of a run's errors is about as far out.
   static constexpr double deviations = 2;
   static constexpr int disturbed_values = 3;
-  /// A place that a disturbance moves further, in length scales, rad or the measure of path_system.hpp, is not judged
-  /// by it: K changes along the way.
+  /// Some dozens of solves and a few factorizations tell digits: up to so many columns, that is a millisecond or two,
+  /// and what is kept for them little memory.
+  static constexpr int most_columns = 3000;
+  /// A place that a disturbance moves further, in length scales, rad or the measure of path_system.hpp, or rates by
+  /// this part of the largest, is not judged by it: K changes along the way, and what is of second order shows.
   static constexpr double largest_way = 1e-5;
   /// Of the rounding of a balance, which is a bound: with all of it claims were optimistic by 1 at most, and half of
   /// them pessimistic by 92 and more, over 275 random mechanisms.

@@ -11,8 +11,6 @@ namespace catena {
 namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-// One factorization and some ten solves: beyond this many columns they are a part of the search that shows.
-constexpr int most_columns = 3000;
 // An answer of the linear equations is used if it leaves no more than this of their right-hand sides.
 constexpr double solved = 1e-3;
 
@@ -26,7 +24,7 @@ void EquilibriumAccuracy::take(const Snapshot& snapshot, std::span<const double>
 }
 
 std::vector<double> EquilibriumAccuracy::digits(const AnalysisReport& report) {
-  if (analysis_.plan().columns > most_columns) return {};
+  if (analysis_.plan().columns > Disturbance::most_columns) return {};
   if (!report.ok() || rows_ != 1 || withheld_) return {};
   StaticSystem& system = analysis_.system();
   unique_ = report.redundant.empty();

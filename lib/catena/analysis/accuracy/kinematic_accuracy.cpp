@@ -11,12 +11,8 @@ namespace catena {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-// So far places (length scales, rad) and rates (of the largest) may change by a disturbance: what is of second order is
-// then small beside the change.
-constexpr double largest_change = 1e-4;
-// Four rows take some eighty solves and a few factorizations: that is a millisecond up to the first number of columns,
-// and a small part of the run from the second number of rows on, at six solves and a factorization each.
-constexpr int small_mechanism = 3000;
+// Four rows take some eighty solves and a few factorizations: a small part of the run from this number of rows on, at
+// six solves and a factorization each.
 constexpr std::int64_t many_rows = 400;
 // A row takes the place of the worst conditioned one if it is worse by this factor: copies are few.
 constexpr double clearly_worse = 0.7;
@@ -67,7 +63,7 @@ void KinematicAccuracy::take(const Snapshot& snapshot, std::span<const double> v
 }
 
 std::vector<double> KinematicAccuracy::digits(const AnalysisReport& report) {
-  if (plan_.columns > small_mechanism && count_ < many_rows) return {};
+  if (plan_.columns > Disturbance::most_columns && count_ < many_rows) return {};
   if (!report.ok() || count_ == 0 || analysis_.interpolated() || !analysis_.singular_points().empty()) return {};
   // The rows' own counts are given already, and these are not of the run.
   left_of_rates_ = std::max(analysis_.solver().left_of_rates(), Disturbance::epsilon * Disturbance::epsilon);
@@ -113,7 +109,7 @@ bool KinematicAccuracy::examine(const Row& row) {
   if (!solver.respond(solver.phi(), kept_.change)) return false;
   for (std::size_t k = 0; k < kept_.change.size(); ++k) exact.q[k] -= kept_.change[k];
   // A row that is further off was not solved to the equations that hold here.
-  if (!(solver.distance(exact.q, row.q, nullptr) <= largest_change)) return false;
+  if (!(solver.distance(exact.q, row.q, nullptr) <= Disturbance::largest_way)) return false;
   solver.residual_at(exact.q);
   if (!solve_rates(exact, nullptr, 0)) return false;
   values_at(row, exact, kept_.first);
@@ -141,7 +137,7 @@ bool KinematicAccuracy::disturb(const Row& row, const State& exact) {
     if (!disturb_by(size, row, exact, state)) return false;
     const double changed = change(exact, state);
     if (!std::isfinite(changed)) return false;
-    if (changed <= largest_change) {
+    if (changed <= Disturbance::largest_way) {
       values_at(row, state, kept_.other);
       for (std::size_t k = 0; k < kept_.square.size(); ++k) {
         const double difference = (kept_.other[k] - kept_.first[k]) / size;
@@ -149,7 +145,7 @@ bool KinematicAccuracy::disturb(const Row& row, const State& exact) {
       }
       return true;
     }
-    size *= 0.1 * largest_change / changed;
+    size *= 0.1 * Disturbance::largest_way / changed;
   }
   return false;
 }

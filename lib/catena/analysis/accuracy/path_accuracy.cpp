@@ -12,8 +12,6 @@ namespace catena {
 namespace {
 
 constexpr double no_multiplier = std::numeric_limits<double>::quiet_NaN();
-// Beyond this many coordinates rows would have to be kept that are a part of the memory that shows.
-constexpr int most_coordinates = 3000;
 // Rows that are disturbed beside those at critical points: each costs three models more, and some ten solves. What
 // Newton's method left differs from row to row, and is looked for in all.
 constexpr std::size_t disturbed_rows = 20;
@@ -39,7 +37,7 @@ PathAccuracy::PathAccuracy(const Path& analysis, std::shared_ptr<const Model> fi
 // Places relative to the origins of the first model, as PathSystem has them.
 void PathAccuracy::take(double value, const Snapshot& snapshot, std::span<const double> row) {
   errors_.take_row(row);
-  if (evaluator_.plan().columns > most_coordinates) return;
+  if (evaluator_.plan().columns > Disturbance::most_columns) return;
   Row& kept = rows_.emplace_back();
   kept.values.assign(row.begin(), row.end());
   kept.point.p = value;

@@ -8,6 +8,7 @@
 
 #include "catena/analysis/accuracy/disturbance.hpp"
 #include "catena/analysis/accuracy/second_run_rows.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
@@ -19,7 +20,7 @@ constexpr double factor_of_difference = 2;
 constexpr double part_of_largest = 0.05;
 // Places are further off than equations: one of 10,116 columns of baumgarte was by 14 times.
 constexpr double leverage = 4;
-constexpr double factor_of_instants = 2, part_of_time = 1e-9;
+constexpr double factor_of_instants = 2;
 
 // Units of places, rates and accelerations.
 bool is_of_bodies(UnitKind unit) {
@@ -44,8 +45,8 @@ void SecondRun::find_jumps(const MotionChanges& first, const MotionChanges& seco
   for (std::size_t k = 0; k < first.all().size(); ++k) {
     const MotionChange& change = first.all()[k];
     if (change.t == motion_.first) continue;
-    const double reach =
-        factor_of_instants * std::abs(change.t - second.all()[k].t) + part_of_time * std::abs(change.t - motion_.first);
+    const double reach = factor_of_instants * std::abs(change.t - second.all()[k].t) +
+                         thresholds::same_instant * std::abs(change.t - motion_.first);
     for (auto at = std::lower_bound(instants.begin(), instants.end(), std::pair{change.t - reach, std::size_t{0}});
          at != instants.end() && at->first <= change.t + reach; ++at) {
       const bool own_row = change.has_row && at->first == change.t && other.t[at->second] == second.all()[k].t;

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "catena/analysis/contact/contact_loads.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// Of the rates that a slip is the sum of, and at which tensions begin: rounding.
-constexpr double rounding = 1e-12;
 // Of tensions: that of angles of contact, as bodies are on their constraints.
 constexpr double tension_rounding = 1e-10;
 
@@ -99,7 +98,7 @@ bool ElasticGrips::slips(std::size_t grip) const {
   const Rate before = T_[grip], behind = T_[grip + 1];
   if (before.f > 0 || behind.f > 0) return margin(grip) < 0;
   const double sum = std::abs(before.d) + std::abs(behind.d);
-  return std::min(before.d * most - behind.d, behind.d * most - before.d) < -rounding * sum;
+  return std::min(before.d * most - behind.d, behind.d * most - before.d) < -ContactProblem::rounding_of_grips * sum;
 }
 
 void ElasticGrips::settle(const Evaluator& evaluator, std::span<const double> qd, std::vector<ContactState>& states) {
@@ -115,7 +114,8 @@ void ElasticGrips::settle(const Evaluator& evaluator, std::span<const double> qd
         const bool forward = T_[k + 1].f != T_[k].f ? T_[k + 1].f > T_[k].f : T_[k + 1].d > T_[k].d;
         state.direction = forward ? -1 : 1;
         changed = true;
-      } else if (state.direction * slip(k) < -rounding * (std::abs(u_[k + 1].d) + std::abs(S_[k + 1].d))) {
+      } else if (state.direction * slip(k) <
+                 -ContactProblem::rounding_of_grips * (std::abs(u_[k + 1].d) + std::abs(S_[k + 1].d))) {
         state.direction = 0;
         state.held = held(k);
         changed = true;

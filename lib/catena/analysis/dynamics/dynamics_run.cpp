@@ -19,9 +19,6 @@ namespace {
 // Energies cost as much as a hundredth of a step's evaluations; less often, that is not to be seen. Of the first steps
 // the 1st, 2nd, 4th, 8th and 16th are looked at, too: a swing takes thirty, and at its ends nothing is in motion.
 constexpr std::int64_t steps_between_checks = 32;
-// Velocities that are projected by less than this part of the largest are those of a smooth motion: steps keep them to
-// 1e-12.
-constexpr double no_jump = 1e-10;
 
 // Whether nothing in the scene gives a length: neither joints, nor bodies, nor what acts on them.
 bool lacks_length(const Evaluator& evaluator) {

@@ -17,6 +17,7 @@
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/pose/departure.hpp"
 #include "catena/analysis/pose/singular_start.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
@@ -29,8 +30,6 @@ constexpr double rounded_place = 16 * std::numeric_limits<double>::epsilon();
 // Part of a bridge after which drivers that rest at the singular instant are evaluated again: they have begun to move,
 // while the mechanism has not moved visibly.
 constexpr double moment = 2e-3;
-// Accuracy of instants on a bridge, relative to its length.
-constexpr double same_instant = 1e-9;
 
 }  // namespace
 
@@ -234,10 +233,12 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
   const double first = h > 0 ? instants.front() : instants.back();
   centre_crossing(crossing, first, target, reach);
   for (double instant : instants) {
-    if (instant > run_.latest + same_instant * length || instant < run_.earliest - same_instant * length) continue;
+    if (instant > run_.latest + thresholds::same_instant * length ||
+        instant < run_.earliest - thresholds::same_instant * length)
+      continue;
     // Instants closer than their accuracy count as one.
     if (!singular_points_.empty() && instant != first &&
-        std::abs(instant - singular_points_.back().t) < same_instant * (crossing.to - crossing.from)) {
+        std::abs(instant - singular_points_.back().t) < thresholds::same_instant * (crossing.to - crossing.from)) {
       continue;
     }
     SingularPoint point = look_at(crossing, instant);

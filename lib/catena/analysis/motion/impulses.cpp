@@ -15,9 +15,6 @@ namespace {
 // Impulses below this part of the largest, or of the largest momentum, are rounding: velocities are known to 1e-12 of
 // the largest, and a system of a condition of 10^2 leaves this.
 constexpr double rounding = 1e-10;
-// A velocity that changes by less than this part of the largest that the driver had since its last breakpoint does not
-// jump: tables and laws meet their ends to about 1e-12 of that.
-constexpr double no_jump = 1e-9;
 // Instants since the last breakpoint at which the largest rate of a driver is looked for.
 constexpr int looks = 8;
 

@@ -40,6 +40,10 @@ inline constexpr double closed_gap = 1e-9, no_force = 1e-9;
 /// given to some seven digits, and what motions, differences or null vectors tell is good to 1e-7 and better.
 inline constexpr double same_value = 1e-6;
 
+/// Two instants that are nearer to each other than this part of the stretch of time that they lie in are one: they are
+/// found to rounding on motions that are known to some eight digits.
+inline constexpr double same_instant = 1e-9;
+
 /// Two instants, or functions of time, whose rates differ by less than this part move together: rates are good to 1e-8
 /// and better.
 inline constexpr double same_rate = 1e-6;

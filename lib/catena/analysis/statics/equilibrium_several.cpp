@@ -13,8 +13,8 @@
 namespace catena {
 namespace {
 
-// Starts: some for every scene, more for every equilibrium wanted.
-constexpr int least_starts = 30, starts_each = 15;
+// Starts for every equilibrium wanted, and for two more.
+constexpr int starts_each = 15;
 // Displacement of places as a part of that of angles times the length scale. Where bodies turn angles lead in the first
 // half of the starts; angles may be held, and places what sets equilibria apart.
 constexpr double shaken_places = 0.5, shaken_beside_angles = 0.1;
@@ -43,7 +43,7 @@ EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& obs
   const bool turns = std::any_of(plan_->coordinate.begin(), plan_->coordinate.end(), [](int k) { return k % 3 == 2; });
   std::vector<Candidate> found;
   EquilibriumReport first;
-  const int starts = least_starts + starts_each * options_.find;
+  const int starts = starts_each * (options_.find + 2);
   int used = 0;
   for (; used < starts && static_cast<int>(found.size()) < options_.find; ++used) {
     q_ = start;

@@ -27,9 +27,8 @@ namespace {
 // Of the loads, and of the forces that balance them: what is left unbalanced by rounding. Where places wedge a body the
 // forces grow without bound as friction falls to the least that holds.
 constexpr double balanced = 1e-11, balanced_of_forces = thresholds::sum_rounding;
-// The slopes of joints follow the forces until u falls by no more than this part, and no oftener than this: each turn
-// leaves a part of the way, about a tenth at most where statics determines all but one force.
-constexpr double turn_gain = 1e-13;
+// The slopes of joints follow the forces until u falls by rounding alone, and no oftener than this: each turn leaves
+// a part of the way, about a tenth at most where statics determines all but one force.
 constexpr int most_turns = 60;
 // Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
 constexpr double most_friction = 1e8;
@@ -162,7 +161,7 @@ std::optional<double> least_from_slopes(HoldingTest& holds) {
     holds(*least);
     holds.press();
     const std::optional<double> next = least_with_slopes(holds);
-    if (!next || *next >= *least * (1 - turn_gain)) break;
+    if (!next || *next >= *least * (1 - thresholds::carried_rounding)) break;
     least = next;
   }
   return least;

@@ -39,7 +39,8 @@ class Adams final : public Integrator {
   double rate() const override { return scale_.rate(); }
 
  private:
-  static constexpr std::size_t most = 12;  // order of a predictor
+  // Order k of a predictor: the corrector and the estimates take difference k + 1, of k + 2 instants.
+  static constexpr std::size_t most = AdamsHistory::most - 2;
 
   /// Estimates at orders k, k - 1 and k - 2, compared with what is allowed.
   struct Errors {

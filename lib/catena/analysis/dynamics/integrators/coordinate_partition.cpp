@@ -13,6 +13,7 @@
 namespace catena {
 namespace {
 
+// Newton's method from a step's end doubles the digits: steps that need more are too long.
 constexpr int most_iterations = 10;
 // Iterations gain nothing any more below `assembled`, nor do they where every equation misses by no more than rounding
 // of its terms: with long arms (wheels of a thousand length scales) that is much more, and beside them small wheels
@@ -193,7 +194,7 @@ bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::s
   // The factors are those of the estimate, the Jacobian is the one that holds: further rounds correct for that.
   evaluator_.jacobian(jacobian_);
   before = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < most_iterations; ++round) {
+  for (;;) {
     evaluator_.nu(residual_);
     for (double& value : residual_) value = -value;
     system_.multiply_add(qd, residual_);
