@@ -12,7 +12,7 @@ namespace catena {
 namespace {
 
 // Where no longer step can be made the path ends; in the units of options.arc.
-constexpr double shortest_step = 1e-9;
+constexpr double shortest_arc = 1e-9;
 // Steps shorter than this part of the usual one are kept though a critical point in them could not be located.
 constexpr double unlocated_step = 1e-4;
 // Iterations up to which the next step may be longer.
@@ -52,7 +52,7 @@ Report Path::March::run(PathReport& report) {
       return {Status::step_too_small,
               fmt::format("the path could not be followed beyond {:.10g}: no solution even {:.1g} further on; likely "
                           "cause: it ends there, at a position that cannot be passed",
-                          x_.p, shortest_step),
+                          x_.p, shortest_arc),
               {}};
     }
   }
@@ -185,7 +185,7 @@ bool Path::March::find_next(Trial& trial) {
 Path::March::Progress Path::March::step() {
   system_.forget_refused_value();
   unjudged_.reset();
-  while (length_ > shortest_step) {
+  while (length_ > shortest_arc) {
     Trial trial;
     if (!find_next(trial)) {
       length_ *= 0.5;
