@@ -44,22 +44,27 @@ void Equations::with_element(int element, F&& f) const {
 }
 
 // A constraint that does not hold for the time being is in no block, but its measured quantity can be evaluated all the
-// same.
+// same; at rest, where nothing but its value is asked for, in plain numbers.
 Measured Equations::measure_released(const Pose& pose, int element, std::span<const double> qd) const {
   Measured result;
   const ElementRecord& record = model_->elements[at(element)];
   const auto motion = [&](int body) {
     const int p = body < 0 ? plan_->bodies : plan_->plan_body[at(body)];
-    const double* v = qd.empty() ? nullptr : &qd[at(3 * p)];
-    return moving(ground_frame(pose, p), v ? v[0] : 0, v ? v[1] : 0, v ? v[2] : 0);
+    return moving(ground_frame(pose, p), qd[at(3 * p)], qd[at(3 * p) + 1], qd[at(3 * p) + 2]);
+  };
+  const auto place = [&](int body) {
+    return ground_frame(pose, body < 0 ? plan_->bodies : plan_->plan_body[at(body)]);
   };
   with_list(model_->constraints, record.type, [&](const auto& list) {
     const auto& entry = list[at(record.index)];
     using E = ElementOf<decltype(list)>;
     if constexpr (Measuring<E>) {
-      const Taylor<double> m =
-          measure_of(entry.element, motion(entry.i), motion(entry.j),
-                     contact_of(std::get<ConstraintBlock<E>>(plan_->blocks), pose.contacts, record.index));
+      const CurvePlace& contact = contact_of(std::get<ConstraintBlock<E>>(plan_->blocks), pose.contacts, record.index);
+      if (qd.empty()) {
+        result.value = measure_of(entry.element, place(entry.i), place(entry.j), contact);
+        return;
+      }
+      const Taylor<double> m = measure_of(entry.element, motion(entry.i), motion(entry.j), contact);
       result = {m.f, m.d, m.dd};
     }
   });
