@@ -34,9 +34,14 @@ PhasedMeasures::PhasedMeasures(PhasedDesign design, GivenByModel start)
   }
   adjoint_ = std::make_unique<AdjointMechanism>(evaluator());
   equations_ = std::make_unique<PhaseEquations>(evaluator(), contacts_);
+  std::vector<AdjointMechanism::Reached::SlideOfContact> slides;
+  for (const ContactPoint& point : contacts_.points) {
+    const bool touches = point.kind == ContactKind::rigid || point.kind == ContactKind::compliant;
+    if (touches && point.has_friction()) slides.push_back({point.slide, point.element});
+  }
   for (Group& group : groups()) {
     places_.push_back(design_places(group.mechanism.model(), contacts_.points));
-    reached_.push_back(std::make_unique<AdjointMechanism::Reached>(*adjoint_, group.mechanism));
+    reached_.push_back(std::make_unique<AdjointMechanism::Reached>(*adjoint_, group.mechanism, slides));
     if (std::string trouble = trouble_with_places(group.mechanism.model()); !trouble.empty()) fail(std::move(trouble));
   }
   transpose_ = std::make_unique<PhaseTranspose>(*equations_, *adjoint_, groups().front().mechanism, places_.front());

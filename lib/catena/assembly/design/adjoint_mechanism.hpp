@@ -47,7 +47,12 @@ class AdjointMechanism {
   /// Elements, bodies and functions of a mechanism with derivatives by up to four parameters that these reach.
   class Reached {
    public:
-    Reached(const AdjointMechanism& adjoint, const DesignMechanism& mechanism);
+    /// A slide that is made of what a contact is made of: by their numbers.
+    struct SlideOfContact {
+      int slide, contact;
+    };
+    Reached(const AdjointMechanism& adjoint, const DesignMechanism& mechanism,
+            std::span<const SlideOfContact> slides = {});
     int elements() const { return elements_; }
     /// Whether derivatives ask the mechanism itself: its functions and its bodies that do not move.
     bool asks_mechanism() const { return any_constraint_ || any_force_ || gravity_; }
