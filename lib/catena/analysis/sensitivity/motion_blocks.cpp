@@ -97,9 +97,11 @@ bool MotionDerivatives::take_by_tangents() {
   return true;
 }
 
-// Steps that were not watched come first. The motion's state is that which was shown, but for whole turns.
+// Steps that were not watched come first. The motion's state is that which was shown, but for whole turns. Before the
+// first one nothing may have been shown.
 bool MotionDerivatives::begin_stages(double from, double to, std::span<const double> y) {
   watched_.stages = 0;
+  if (!started_ && why().empty() && start(from, y.first(n_), y.subspan(n_, n_))) started_by_trial_ = true;
   if (!started_ || !why().empty() || (!pending_.empty() && !catch_up(from)) || to_ != from) return false;
   if (!(watched_.begun && watched_.from == from) && !begin_watched(from, y.subspan(n_, n_))) return false;
   watched_.from = from;

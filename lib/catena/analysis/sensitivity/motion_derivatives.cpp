@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "catena/base/at.hpp"
 
@@ -190,7 +191,8 @@ void MotionDerivatives::cover(const MotionStretch& stretch) {
   }
   last_end_ = step->end;
   const std::span<const double> y(step->begin);
-  if (!started_ && !start(step->from, y.first(n_), y.subspan(n_))) return;
+  const bool tried_elsewhere = std::exchange(started_by_trial_, false) && step->from != to_;
+  if ((!started_ || tried_elsewhere) && !start(step->from, y.first(n_), y.subspan(n_))) return;
   if (!take_watched(*step)) pending_.push_back(*std::move(step));
   const MovingInstant& instant = instant_at(stretch.to);
   goes_on_ = instant.order == 0 && stretch.ended_by < 0;

@@ -119,6 +119,7 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
   SaddleSystem system_;
   GivenByModel given_start_;
   bool started_ = false, has_step_ = false, interpolant_ready_ = false;
+  bool started_by_trial_ = false;  // at a step that was tried, before anything was shown
   double from_ = 0, to_ = 0;
   std::optional<double> crossed_;  // where functions of time jumped last
   std::vector<Track> tracks_;

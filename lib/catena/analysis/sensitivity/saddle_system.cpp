@@ -37,6 +37,14 @@ void SaddleSystem::leave_out(std::vector<int> rows) {
   rows_known_ = false;
 }
 
+void SaddleSystem::use_rows_of(const SaddleSystem& other) {
+  left_out_ = other.left_out_;
+  rows_ = other.rows_;
+  dependent_ = other.dependent_;
+  rows_known_ = other.rows_known_;
+  analyzed_ = false;
+}
+
 // A maximal independent set among the rows that hold.
 void SaddleSystem::choose_rows(std::span<const double> jacobian) {
   std::vector<int> held, place(at(plan_->rows), -1);
@@ -58,7 +66,8 @@ void SaddleSystem::choose_rows(std::span<const double> jacobian) {
   const SlottedPattern slotted = build_pattern(static_cast<int>(held.size()), plan_->columns, entries);
   std::vector<double> sorted(values.size());
   for (std::size_t k = 0; k < values.size(); ++k) sorted[at(slotted.slot[k])] = values[k];
-  const RankReport rank = reveal_rank(slotted.pattern, sorted);
+  // Of motions that are left nothing is asked.
+  const RankReport rank = reveal_rank(slotted.pattern, sorted, {.most_null_vectors = 0});
   rows_.clear();
   dependent_.clear();
   for (const int r : rank.independent_rows) rows_.push_back(held[at(r)]);
@@ -160,24 +169,29 @@ bool SaddleSystem::factorize_alone() {
   return alone_.factors.factorize() && alone_.factors.rcond() > regular;
 }
 
-// solution_, [f; b] in, [x; lambda] out: x follows from b, lambda from f.
+// solution_, [f; b] in, [x; lambda] out: x follows from b, lambda from f; of zero nothing follows.
 void SaddleSystem::solve_alone() {
   const std::size_t columns = at(plan_->columns);
   const std::span<double> sides(solution_), found(alone_.solution);
+  const auto is_zero = [](std::span<const double> side) {
+    return std::all_of(side.begin(), side.end(), [](double entry) { return entry == 0; });
+  };
+  const bool asks_places = !is_zero(sides.subspan(columns)), asks_multipliers = !is_zero(sides.first(columns));
   if (alone_.in_list) {
     // The list takes rows in the order of the plan.
     const std::span<double> x = found.first(columns), lambda = found.subspan(columns);
     for (std::size_t k = 0; k < columns; ++k) x[at(rows_[k])] = sides[columns + k];
-    factorization_.solve(x, counters_);
+    if (asks_places) factorization_.solve(x, counters_);
     std::copy_n(sides.begin(), columns, sides.begin() + static_cast<std::ptrdiff_t>(columns));
     const std::span<double> f = sides.subspan(columns);
-    factorization_.solve_transposed(f, counters_);
+    if (asks_multipliers) factorization_.solve_transposed(f, counters_);
     for (std::size_t k = 0; k < columns; ++k) lambda[k] = f[at(rows_[k])];
     std::swap(solution_, alone_.solution);
     return;
   }
-  alone_.factors.solve<double>(sides.subspan(columns), found.first(columns));
-  alone_.factors.solve_transposed<double>(sides.first(columns), found.subspan(columns));
+  std::fill(found.begin(), found.end(), 0.0);
+  if (asks_places) alone_.factors.solve<double>(sides.subspan(columns), found.first(columns));
+  if (asks_multipliers) alone_.factors.solve_transposed<double>(sides.first(columns), found.subspan(columns));
   std::swap(solution_, alone_.solution);
 }
 

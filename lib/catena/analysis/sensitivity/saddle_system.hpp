@@ -31,6 +31,8 @@ class SaddleSystem {
 
   /// Rows that do not hold, ascending; the next begin() chooses independent ones anew if they are others.
   void leave_out(std::vector<int> rows);
+  /// Solves with the rows that another system of this plan has chosen, for the same values of Phi_q.
+  void use_rows_of(const SaddleSystem& other);
   /// Takes these values of Phi_q (size entries), and A = 0; false where no pattern of this kind can be solved.
   bool begin(std::span<const double> jacobian);
   /// Adds `value` to the diagonal at a coordinate.

@@ -142,10 +142,13 @@ bool StartDerivatives::prepare_places(std::span<const double> q) {
   weigh();
   for (std::size_t c = 0; c < f.size(); ++c) f[c] = -place_weight_[c] * apart_[c];
   if (!assembly_.factorize() || !assembly_.solve(f, place_multipliers_)) return false;
-  assembly_.begin(phi_q);
-  weigh();
-  assembly_.tangent().add_curvature(evaluator_, place_multipliers_);
-  if (!assembly_.factorize()) return false;
+  // Without multipliers constraints add no curvature: these are the factors.
+  if (!is_zero(place_multipliers_)) {
+    assembly_.begin(phi_q);
+    weigh();
+    assembly_.tangent().add_curvature(evaluator_, place_multipliers_);
+    if (!assembly_.factorize()) return false;
+  }
   prepared_q_.assign(q.begin(), q.end());
   return true;
 }
@@ -258,6 +261,7 @@ bool StartDerivatives::prepare_velocities(DesignMechanism& mechanism, std::span<
   prepared_qd_.clear();
   if (!weigh(prepared_q_, qd)) return false;
   const auto singular = [&] { return fail("the equations of its velocities are singular"); };
+  velocities_.use_rows_of(assembly_);
   if (!velocities_.begin(std::span<const double>(jacobian_).first(at(plan_.trash_slot())))) return singular();
   for (const int coordinate : plan_.coordinate) velocities_.add_diagonal(coordinate, weight_[at(coordinate)]);
   if (!velocities_.factorize()) return singular();
