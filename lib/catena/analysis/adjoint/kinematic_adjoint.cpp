@@ -19,18 +19,45 @@ KinematicAdjoint::KinematicAdjoint(const Evaluator& evaluator, const DesignModel
   zero_loads_.assign(at(plan().coordinates()), 0.0);
 }
 
-bool KinematicAdjoint::find(const Snapshot& snapshot) {
+bool KinematicAdjoint::singular_at(double t) {
+  return fail(fmt::format("at t = {:.9g} s the mechanism is in a singular configuration, which has no derivative", t));
+}
+
+bool KinematicAdjoint::factorize(const Snapshot& snapshot, const Evaluator& there) {
   if (instant_at(snapshot.t).moves())
     return fail(fmt::format("at t = {:.9g} s a function of time jumps at an instant that moves with the parameters",
                             snapshot.t));
+  if (!system_.factorize(jacobian(there), [] {})) return singular_at(snapshot.t);
+  mechanism_.set_motion(there, snapshot.qd, snapshot.qdd);
+  return true;
+}
+
+bool KinematicAdjoint::find(const Snapshot& snapshot) {
   evaluator().set_time(snapshot.t);
   evaluator().set_configuration(snapshot.q);
-  if (!system_.factorize(jacobian(), [] {}))
-    return fail(fmt::format("at t = {:.9g} s the mechanism is in a singular configuration, which has no derivative",
-                            snapshot.t));
+  if (!factorize(snapshot, evaluator())) return false;
   // Of all: columns read functions of time as well.
   for (Group& group : groups()) group.mechanism.set_time(snapshot.t);
-  mechanism_.set_motion(evaluator(), snapshot.qd, snapshot.qdd);
+  return true;
+}
+
+bool KinematicAdjoint::add_gradient(const Snapshot& snapshot, std::span<const double> by_q, std::span<double> out) {
+  // Places ask for no more than the snapshot's own evaluator shows.
+  if (!factorize(snapshot, snapshot.evaluator)) return false;
+  // Which parameters contradict them is seen by carrying derivatives forward alone.
+  if (!system_.dependent_rows().empty()) return fail("constraints depend on each other");
+  const std::span<double> load = loads_scratch();
+  std::copy(by_q.begin(), by_q.end(), load.begin());
+  mu0_ = zero_rows_;
+  if (!system_.solve(load, mu0_)) return singular_at(snapshot.t);
+  std::size_t first = 0;
+  for (std::size_t g = 0; g < groups().size(); ++g) {
+    Group& group = groups()[g];
+    if (reached_[g]->asks_mechanism()) group.mechanism.set_time(snapshot.t);
+    const auto part = mechanism_.by_parameters(group.mechanism, *reached_[g], {.phi = mu0_}, {});
+    for (std::size_t p = 0; p < at(group.count); ++p) out[first + p] += part[p];
+    first += at(group.count);
+  }
   return true;
 }
 
@@ -83,9 +110,7 @@ bool KinematicAdjoint::derive(const ColumnSet& columns, const Snapshot& snapshot
     StateSlopes by = slopes_->empty();
     slopes_->add(k, 1, by);
     if (!slopes_->reads_multipliers(k)) by.by_lambda.clear();
-    if (!solve(snapshot, by))
-      return fail(fmt::format("at t = {:.9g} s the mechanism is in a singular configuration, which has no derivative",
-                              snapshot.t));
+    if (!solve(snapshot, by)) return singular_at(snapshot.t);
     AdjointWeights weights{.phi = mu0_, .rate = mu1_, .bend = mu2_};
     if (!by.by_lambda.empty()) {
       weights.w = w_;

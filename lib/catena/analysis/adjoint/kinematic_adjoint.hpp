@@ -27,11 +27,17 @@ class KinematicAdjoint final : public StateDerivatives {
   bool find(const Snapshot& snapshot) override;
   bool derive(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out,
               std::span<double> change = {}) override;
+  /// out += df/dp of a function f of the places q whose slopes f_q at this snapshot are given, over coordinates: what a
+  /// program measures itself. False where there is none, and why() says it.
+  bool add_gradient(const Snapshot& snapshot, std::span<const double> by_q, std::span<double> out);
 
  protected:
   int seen_order() const override { return 3; }
 
  private:
+  /// Factors and the motion where the evaluator is, at the snapshot.
+  bool factorize(const Snapshot& snapshot, const Evaluator& there);
+  bool singular_at(double t);
   /// w and the three multipliers of a column; false where the solves fail.
   bool solve(const Snapshot& snapshot, StateSlopes& by);
 

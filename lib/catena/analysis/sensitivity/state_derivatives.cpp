@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
+#include "catena/analysis/run/breakpoints.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/saddle_system.hpp"
 #include "catena/columns/state_laws.hpp"
@@ -49,8 +51,8 @@ StateDerivatives::StateDerivatives(const Evaluator& evaluator, const DesignModel
   b_.resize(rows);
 }
 
-std::span<const double> StateDerivatives::jacobian() {
-  evaluator_.jacobian(jacobian_);
+std::span<const double> StateDerivatives::jacobian(const Evaluator& there) {
+  there.Equations::jacobian(there.pose(), jacobian_);
   return std::span<const double>(jacobian_).first(static_cast<std::size_t>(plan().trash_slot()));
 }
 
@@ -105,14 +107,23 @@ const MovingInstant& StateDerivatives::instant_at(double t) {
   at_instant_.rate.assign(static_cast<std::size_t>(parameters_), 0.0);
   std::size_t first = 0;
   for (const Group& group : groups_) {
-    MovingInstant here{0, std::vector<double>(static_cast<std::size_t>(group.count), 0.0)};
+    const auto count = static_cast<std::size_t>(group.count);
+    bool any = false;  // a function that may jump: at most instants there is none
     for (const auto& function : group.mechanism.model().functions) {
+      if (!is_breakpoint(function, t)) continue;
+      if (!std::exchange(any, true)) {
+        of_group_.order = 0;
+        of_group_.rate.assign(count, 0.0);
+      }
       const FunctionJump jump = jump_of(function, t);
-      if (jump.order <= seen_order()) here.add(jump, 0);
+      if (jump.order <= seen_order()) of_group_.add(jump, 0);
     }
-    at_instant_.order = here.order;  // the same in all groups
-    std::copy(here.rate.begin(), here.rate.end(), at_instant_.rate.begin() + static_cast<std::ptrdiff_t>(first));
-    first += here.rate.size();
+    if (any) {
+      at_instant_.order = of_group_.order;  // the same in all groups
+      std::copy(of_group_.rate.begin(), of_group_.rate.end(),
+                at_instant_.rate.begin() + static_cast<std::ptrdiff_t>(first));
+    }
+    first += count;
   }
   return at_instant_;
 }

@@ -121,7 +121,9 @@ class StateDerivatives {
   /// A parameter that moves this row alone of several that depend on each other: no state has a derivative by it.
   void leave_out_parameter(Group& group, std::size_t p, int row);
   /// Phi_q at the evaluator's configuration, size entries.
-  std::span<const double> jacobian();
+  std::span<const double> jacobian() { return jacobian(evaluator_); }
+  /// The same where another one is, of the same plan: positions alone tell it, and functions of time.
+  std::span<const double> jacobian(const Evaluator& there);
   /// Values without derivatives.
   static void lift(std::span<const double> values, std::vector<DesignScalar>& out);
   /// Lifts q (with what is given of coordinates that are no unknowns), and what the snapshot has of qd, qdd and lambda.
@@ -139,7 +141,7 @@ class StateDerivatives {
   std::vector<double> part_ends_;
   std::vector<double> before_, column_before_, column_after_;  // of derive(), kept for their memory
   double instant_ = std::numeric_limits<double>::quiet_NaN();
-  MovingInstant at_instant_;  // what functions do there
+  MovingInstant at_instant_, of_group_;  // what functions do there, together and those of one group
   std::string why_, lack_, jump_;
 };
 
