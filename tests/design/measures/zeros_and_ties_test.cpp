@@ -102,5 +102,34 @@ TEST(ZerosAndTies, ExtremesThatMoveApart) {
   EXPECT_TRUE(warns(run, "with different derivatives"));
 }
 
+// h + s (t - a)^2 (t - b) is h at t = a, its top, and again where the run ends, t = b; and h - s (t - a)^2 (t - b)
+// where it begins.
+TEST(ZerosAndTies, ExtremesInsideAndAtAnEndOfTheRun) {
+  expect_no_fault(1, size_of_test(12u, 3u), [](unsigned seed) -> std::string {
+    RandomNumbers random(seed);
+    const double a = random(0.2, 0.4), end = random(0.8, 1.2), h = random(-1, 1), s = random(0.5, 2);
+    const bool last = seed % 2 == 0, far = seed % 3 == 0;  // beyond the run: the top alone is left
+    const std::string b = text_of((last ? end : 0) + (far ? (last ? 0.1 : -0.1) : 0)),
+                      top = text_of(last ? a : end - a);
+    const std::string cube = std::string(last ? " + " : " - ") + "s*(t - a)^2*(t - b)";
+    const TextRun run = run_sensitivity_of(
+        R"("parameters": {"a": )" + top + R"(, "b": )" + b + R"(, "h": )" + text_of(h) + R"(, "s": )" + text_of(s) +
+            R"(, "T": )" + text_of(end) + R"(}, "bodies": {"p": {"particle": true, "mass": 1, "velocity": [1, 0]}})",
+        R"(["a", "b", "h", "s", "T"])", seed % 4 < 2 ? "adjoint" : "forward",
+        R"("type": "dynamics", "until": "=T", "every": 0.1)", R"("most": {"max": "=h)" + cube + R"("})");
+    if (run.outcome.exit_code != 0) return run.outcome.error_text + run.analysis().report.message;
+    if (std::abs(value(run, "most") - h) > 1e-10) return "most is " + text_of(value(run, "most"));
+    const std::array<double, 5> by{0, 0, 1, 0, 0};
+    for (std::size_t p = 0; p < by.size(); ++p) {
+      const double given = gradient(run, "most", p);
+      // By b the end moves alone; by T it is the run's end that does.
+      const bool none = !far && (p == 1 || (p == 4 && last));
+      if (none ? !std::isnan(given) : !(std::abs(given - by[p]) <= 1e-8))
+        return "by number " + std::to_string(p) + " " + text_of(given) + " " + measure(run, "most").trouble;
+    }
+    return far || warns(run, "its extreme is reached") ? "" : "no reason";
+  });
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -135,11 +135,11 @@ std::optional<Extreme::Peak> Extreme::settle(double centre, double h, double kno
 }
 
 // The top between a and b, `middle` above both. `guess`: where a polynomial of high degree has it.
-std::optional<Extreme::Peak> Extreme::locate(Peak a, Peak middle, Peak b, std::optional<double> guess, double length,
+std::optional<Extreme::Peak> Extreme::locate(Peak a, Peak middle, Peak b, std::optional<Peak> guess, double length,
                                              const MotionPiece& piece, const At& at) const {
   const double h = window * length;
   if (guess) {
-    if (const std::optional<Peak> peak = settle(*guess, h, middle.value, piece, at)) return peak;
+    if (const std::optional<Peak> peak = settle(guess->t, h, middle.value, piece, at)) return peak;
   }
   double step = b.t - a.t;
   for (int n = 0; n < thresholds::most_bisections && step > 1e-9 * length; ++n) {
@@ -208,9 +208,9 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
   // A kink between the samples makes a polynomial through all of them worthless: then the top is found by its bracket.
   std::array<double, count> x{};
   for (std::size_t k = 0; k < count; ++k) x[k] = (t[k] - t.front()) / length;
-  const auto guess = [&](std::size_t from, double start, std::size_t to) -> std::optional<double> {
+  const auto guess = [&](std::size_t from, double start, std::size_t to) -> std::optional<Peak> {
     const auto found = Polynomial(x, v).stationary((start - t.front()) / length, x[from], x[to]);
-    return found ? std::optional(t.front() + length * found->x) : std::nullopt;
+    return found ? std::optional(Peak{t.front() + length * found->x, found->value}) : std::nullopt;
   };
   // What the parabola through a sample and its neighbours comes up to beside it.
   const auto foreseen = [&](std::size_t k) {
@@ -221,21 +221,36 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
   };
   for (std::size_t k = 0; k < count; ++k) {
     const bool end = k == 0 || k == count - 1;
-    if (!promises(std::max(v[k], foreseen(k)))) continue;
-    if (!end && v[k] >= v[k - 1] && v[k] >= v[k + 1] && (v[k] > v[k - 1] || v[k] > v[k + 1])) {
+    const std::size_t from = k == 0 ? 0 : k - 1, to = std::min(k + 1, count - 1);
+    const bool highest = v[k] >= v[from] && v[k] >= v[to];
+    // Where nine samples tell all of a column they may lie too far apart for a parabola.
+    const auto by_all = [&] { return highest ? guess(from, t[k], to) : std::nullopt; };
+    if (!promises(std::max(v[k], foreseen(k)))) {
+      const std::optional<Peak> far = by_all();
+      if (!far || !promises(far->value)) continue;
+    }
+    if (!end && highest && (v[k] > v[k - 1] || v[k] > v[k + 1])) {
       const Peak before{t[k - 1], v[k - 1]}, here{t[k], v[k]}, after{t[k + 1], v[k + 1]};
-      if (const auto peak = locate(before, here, after, guess(k - 1, t[k], k + 1), length, piece, at)) take(peak->t);
+      if (const auto peak = locate(before, here, after, by_all(), length, piece, at)) take(peak->t);
     } else if (end) {
-      // A top may lie between the end and the sample beside it.
+      // A top may lie between the end and the sample beside it; near the end the parabola may have it outside.
       const std::size_t i = k == 0 ? 0 : count - 3;
-      const std::optional<double> inside = top(t[i], v[i], t[i + 1], v[i + 1], t[i + 2], v[i + 2]);
-      const std::size_t from = k == 0 ? 0 : count - 2, to = from + 1;
-      const bool between = inside && *inside > t[from] && *inside < t[to];
-      const std::optional<double> value = between ? at(*inside) : std::nullopt;
+      const double beside = v[k == 0 ? 1 : count - 2];
+      const auto lies_between = [&](const std::optional<double>& at_top) {
+        return at_top && *at_top > t[from] && *at_top < t[to];
+      };
+      std::optional<double> inside = top(t[i], v[i], t[i + 1], v[i + 1], t[i + 2], v[i + 2]);
+      if (!lies_between(inside)) {
+        const std::optional<Peak> by_nine = by_all();
+        inside = by_nine ? std::optional(by_nine->t) : std::nullopt;
+      }
+      const std::optional<double> value = lies_between(inside) ? at(*inside) : std::nullopt;
+      // Above all before, or as large, as a corner: of what stays the same every sample would be.
+      const double tie = tie_ * size_;
       if (value && *value > std::max(v[from], v[to])) {
         const Peak before{t[from], v[from]}, here{*inside, *value}, after{t[to], v[to]};
         if (const auto peak = locate(before, here, after, guess(from, *inside, to), length, piece, at)) take(peak->t);
-      } else if (v[k] >= v[k == 0 ? 1 : count - 2] && (!best_ || v[k] > largest_)) {
+      } else if (v[k] >= beside && (!best_ || v[k] > largest_ || (v[k] >= largest_ - tie && v[k] > beside + tie))) {
         take(t[k]);
       }
     }

@@ -49,7 +49,7 @@ class Extreme {
     double t, value;
   };
   using At = std::function<std::optional<double>(double)>;
-  std::optional<Peak> locate(Peak a, Peak middle, Peak b, std::optional<double> guess, double length,
+  std::optional<Peak> locate(Peak a, Peak middle, Peak b, std::optional<Peak> guess, double length,
                              const MotionPiece& piece, const At& at) const;
   std::optional<Peak> settle(double centre, double h, double known, const MotionPiece& piece, const At& at) const;
   /// Samples within `reach` of the best, s, belong to the same top, unless `valley`, the lowest value between, is below

@@ -83,6 +83,7 @@ class MeasureSet::Account {
   void add_jump(const MotionSamples& samples, double t, double before, double after);
   void leave_out_start(const MotionSamples& samples, const MotionPiece& piece);
   bool is_at_end(const Extreme& extreme) const;
+  bool ties_with_end(const Extreme& extreme) const;
   bool is_touched_by(const End& end) const;
   void take_out(MeasureResult& result, std::size_t p, const std::string& why) const;
   void move_points(MeasureResult& result, std::span<const MovingPoint> points) const;

@@ -15,6 +15,15 @@ bool MeasureSet::Account::is_at_end(const Extreme& extreme) const {
   return !extreme.empty() && last_ && extreme.best().t >= last_->t;
 }
 
+// Whether the extreme is reached at the end of the run and before, too.
+bool MeasureSet::Account::ties_with_end(const Extreme& extreme) const {
+  if (extreme.empty() || !last_) return false;
+  const auto ends = [this](const MotionSample& sample) { return sample.t >= last_->t; };
+  const bool best = ends(extreme.best());
+  return std::any_of(extreme.others().begin(), extreme.others().end(),
+                     [&](const MotionSample& other) { return ends(other) != best; });
+}
+
 // A run that an event ended did so at an instant that moves with the parameters, and with it all that is measured up to
 // there; what it had passed before stays.
 void MeasureSet::Account::leave_out_early_end(MeasureResult& result) const {
@@ -121,6 +130,13 @@ void MeasureSet::Account::move(MeasureResult& result, const End* end, const Movi
           fmt::format("at t = {:.9g} s, where the run ends, a function of time jumps at an instant that moves with "
                       "the parameters, but not with the end",
                       end->t));
+      continue;
+    }
+    if (by != 0 && (!end || end->rate[column_] != 0) &&
+        std::any_of(extremes_.begin(), extremes_.end(), [&](const Extreme& e) { return ties_with_end(e); })) {
+      take_out(result, p,
+               "its extreme is reached before the end of the run, too, which moves with the parameters: which of them "
+               "counts changes with them");
       continue;
     }
     if (by != 0 && result.by_last_instant != 0) {
