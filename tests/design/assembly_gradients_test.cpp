@@ -183,5 +183,23 @@ TEST(FarAssemblyGradients, OfRandomMechanismsAreThoseOfWholeRuns) {
   EXPECT_GT(far_compared, 200);
 }
 
+// A cam on a cam has no points whose distance from the centroid says how turning compares with moving: its own size
+// does, and not that of what stands beside it and is not tied to it.
+TEST(AssembledPlaces, OfABodyOnCurvesAreThoseWithoutWhatStandsBeside) {
+  const auto assembled = [](bool beside) {
+    const std::string other = R"(, "w": {"mass": 1, "inertia": 1, "position": [9, 9]})";
+    const std::string pin = R"(, {"type": "revolute", "i": ["ground", [9, 4]], "j": ["w", [0, -5]]})";
+    return run_text(R"({"catena": 1, "bodies": {"b": {"mass": 1, "inertia": 1, "position": [2, 0.1], "angle": 0.2})" +
+                    (beside ? other : "") + R"(}, "constraints": [{"type": "cam_cam", "i": "ground", "j": "b",
+          "curve_i": {"circle": {"centre": [0, 0], "radius": 1}},
+          "curve_j": {"circle": {"centre": [0.5, 1.5], "radius": 1.1}}})" +
+                    (beside ? pin : "") +
+                    R"(], "analyses": [{"type": "assemble", "outputs": ["b.x", "b.y", "b.angle"]}]})");
+  };
+  const TextRun alone = assembled(false), together = assembled(true);
+  for (const std::string column : {"b.x", "b.y", "b.angle"})
+    EXPECT_NEAR(together.last(column), alone.last(column), 1e-12) << column;
+}
+
 }  // namespace
 }  // namespace catena::testing
