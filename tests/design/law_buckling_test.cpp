@@ -107,12 +107,12 @@ TEST(LawBuckling, LoadsFarFromTheGivenOne) {
           return R"({"type": "point_force", "i": ")" + body + R"(", "force": ["=)" + stiffness + "*" + body +
                  R"(.x", 0]})";
         };
-        const TextRun run = run_text(
-            R"({"catena": 1, "parameters": {"P": 0.1}, "bodies": {"u": )" + particle + R"(, "w": )" + particle +
-            R"(}, "constraints": [{"type": "absolute_y", "i": "u", "value": 0},
+        const TextRun run = run_text(R"({"catena": 1, "parameters": {"P": 0.1}, "bodies": {"u": )" + particle +
+                                     R"(, "w": )" + particle +
+                                     R"(}, "constraints": [{"type": "absolute_y", "i": "u", "value": 0},
               {"type": "absolute_y", "i": "w", "value": 0}], "forces": [)" +
-            force("u", unit) + ", " + force("w", unit * apart) +
-            R"(], "analyses": [{"type": "buckling", "parameter": "P", "count": 2}]})");
+                                     force("u", unit) + ", " + force("w", unit * apart) +
+                                     R"(], "analyses": [{"type": "buckling", "parameter": "P", "count": 2}]})");
         if (unit < 1) {
           // Pushed beyond its load already.
           EXPECT_EQ(run.analysis().report.ok(), sign < 0);
@@ -120,8 +120,11 @@ TEST(LawBuckling, LoadsFarFromTheGivenOne) {
         }
         ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
         const auto loads = field<std::vector<double>>(run, "loads");
-        ASSERT_EQ(loads.size(), 2u);
+        // Beyond what is searched there is a warning that says how far that is.
+        ASSERT_GE(loads.size(), apart <= 1e2 ? 2u : 1u);
         EXPECT_NEAR(loads[0], k, 1e-9 * std::max(0.1, std::abs(k)));
+        EXPECT_EQ(warns(run, "there are only 1 such values within"), loads.size() == 1);
+        if (loads.size() == 1) continue;
         EXPECT_NEAR(loads[1], c, 1e-9 * std::max(0.1, std::abs(c)));
       }
     }

@@ -5,7 +5,7 @@
 // The spectrum is sampled outwards from the present value on both sides, in steps that grow from where it begins to
 // change; between samples of different kinds the loads are located (spectrum_crossings.hpp), and where a value dips
 // between three samples the dip is looked at. The search ends where the nearest loads are known, or at 10^4 first
-// steps, 10^8 of small mechanisms.
+// steps: loads a hundred times those that change omega2 by itself.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,10 +25,8 @@
 namespace catena {
 namespace {
 
-// How far loads are looked for, in first steps: as those with an energy where a sample costs microseconds, else up to
-// loads a hundred times those that change omega2 by itself.
-constexpr int few_freedoms = 32;
-constexpr double farthest_of_few = 1e8, farthest_search = 1e4;
+// How far loads are looked for, in first steps.
+constexpr double farthest_search = 1e4;
 
 /// Largest relative change of the values, sorted, that is more than rounding under the load.
 double shift_of(const CirculatoryModes& from, const CirculatoryModes& to, const StiffnessFloor& rounding) {
@@ -64,8 +62,7 @@ class Buckling::CirculatorySearch {
     if (!find_first_step()) return {};
     for (Front& front : fronts_) front.samples = {{0, present_}};
     Report outcome;
-    const double farthest = motions_->freedoms() <= few_freedoms ? farthest_of_few : farthest_search;
-    for_each_distance(step_, farthest, [&](double reach) {
+    for_each_distance(step_, farthest_search, [&](double reach) {
       for (Front& front : fronts_) {
         outcome = go_on_ && !go_on_() ? Report{Status::cancelled, "stopped while loads were looked for", {}}
                                       : take_sample(front, reach);
