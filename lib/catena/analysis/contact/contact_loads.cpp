@@ -121,7 +121,8 @@ double ContactLoads::energy() const {
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const ContactPoint& point = points_[k];
     if (point.kind != ContactKind::compliant || !states_[k].closed) continue;
-    // A step that goes beyond the phase's end is looked at before it is cut there: the force goes on as an odd function.
+    // A step that goes beyond the phase's end is looked at before it is cut there: the force goes on as an odd
+    // function.
     const double d = std::abs(evaluator_.scalar_motion(point.element, {}).value);
     sum += point.k * std::pow(d, point.exponent + 1) / (point.exponent + 1);
   }
