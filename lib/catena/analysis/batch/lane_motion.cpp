@@ -96,6 +96,7 @@ void LaneMotion::begin(unsigned lanes, int rows) {
   for (std::string& why : why_) why.clear();
   std::swap(now_, next_);  // where assemble() left them
   has_before_.fill(false);
+  for (ContactJumps& jumps : jumps_) jumps.forget();
   before_->t = now_->t;  // nothing is foretold from before
   largest_margin_.copy(now_->margin);
   for (int k = 0; k < tails_; ++k)
@@ -163,12 +164,12 @@ unsigned LaneMotion::attempt(unsigned lanes, const std::array<double, lane_count
 }
 
 // Those of these lanes whose places of contact go the way that the step before foretells: of a jump they do not,
-// however short the step is, and the lane leaves the group. Nothing foretells the first step.
+// however short the step is, and the lane leaves the group. Nothing foretells the first step, which is short.
 unsigned LaneMotion::steady_contacts(unsigned lanes) {
   if (solver_.searches().empty()) return lanes;
   unsigned steady = lanes;
   for (int lane = 0; lane < lane_count; ++lane) {
-    if (!(lanes & 1U << lane) || !has_before_[at(lane)]) continue;
+    if (!(lanes & 1U << lane)) continue;
     solver_.searches().show_places(now_->places, lane, places_);
     solver_.searches().show_places(next_->places, lane, nexts_);
     if (jumps_[at(lane)].may_jump(places_, nexts_, next_->t[at(lane)] - now_->t[at(lane)])) steady &= ~(1U << lane);

@@ -10,12 +10,10 @@
 namespace catena {
 namespace {
 
-// Of a curve: shorter ways are not looked at.
-constexpr double short_way = 0.01;
-// Of a way: by how much the speed before may miss it.
-constexpr double as_before = 0.25;
-// The ratio of the ways in both halves of a step.
-constexpr double most_uneven = 3;
+// Of a curve: what a way may be longer or shorter than foretold, and the second half of a way than the first. Where a
+// place ceases, distances to the curve at the old and the new one differ by the fourth power of the jump, in sizes of
+// the curve: what is passed moves nothing by more than 1e-12.
+constexpr double unforeseen = 1e-3;
 
 /// From one place to another by the shorter way round; zero where a curve is not known, or a place is not.
 double way(double from, double to, double range) {
@@ -23,10 +21,7 @@ double way(double from, double to, double range) {
   return range > 0 && std::isfinite(d) ? d - range * std::round(d / range) : 0;
 }
 
-bool is_uneven(double first, double second, double range) {
-  const double longer = std::max(std::abs(first), std::abs(second));
-  return longer > short_way * range && longer > most_uneven * std::min(std::abs(first), std::abs(second));
-}
+bool is_uneven(double first, double second, double range) { return std::abs(second - first) > unforeseen * range; }
 
 }  // namespace
 
@@ -51,8 +46,7 @@ ContactJumps::ContactJumps(const Model& model) {
 
 bool ContactJumps::may_jump(std::span<const CurvePlace> begin, std::span<const CurvePlace> end, double h) const {
   const auto is_new = [&](double d, double range, const std::vector<double>& speed, std::size_t k) {
-    if (!(std::abs(d) > short_way * range)) return false;
-    return k >= speed.size() || !(std::abs(d - h * speed[k]) <= as_before * std::abs(d));
+    return std::abs(d - (k < speed.size() ? h * speed[k] : 0)) > unforeseen * range;
   };
   for (std::size_t k = 0; k < std::min(begin.size(), end.size()); ++k) {
     const Ranges& range = ranges_[at(begin[k].element)];

@@ -3,10 +3,11 @@
 //
 //   d_1 = s(middle) - s(begin)      d_2 = s(end) - s(middle)      of a step, each by the shorter way round
 //
-// A place that moves smoothly has d_1 and d_2 alike, and nearly so where its speed grows like 1 / sqrt(t* - t) towards
-// the end (then d_2 / d_1 = 2.4); one that jumps has nearly all of its way in one half, in however short a step. Steps
-// over less than a hundredth of a curve are not looked at: jumps that are shorter are passed. Units: of the curve's
-// parameter.
+// The difference of both, and that of a way from the one which the step before foretells, fall with the square of the
+// step where a place moves smoothly; of a place that jumps they stay the jump, however short the step is. Jumps of less
+// than a thousandth of a curve are passed: they are those beside a cusp of the distance, D = s^4 + a s^2 + b s, where
+// two places that compete for a point lie sqrt(|a|) apart, D changes by a^2, and the motion by next to rounding. Units:
+// of the curve's parameter.
 #pragma once
 
 #include <span>
@@ -21,7 +22,8 @@ class ContactJumps {
  public:
   explicit ContactJumps(const Model& model);
 
-  /// Whether some place went another way than it did before: `h` is the length of the step, s.
+  /// Whether some place went another way than it did before: `h` is the length of the step, s. Nothing foretells the
+  /// first step, which must be short.
   bool may_jump(std::span<const CurvePlace> begin, std::span<const CurvePlace> end, double h) const;
   /// The element whose place jumps in a step; -1: none.
   int jumping(std::span<const CurvePlace> begin, std::span<const CurvePlace> middle,
