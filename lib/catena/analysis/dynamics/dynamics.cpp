@@ -9,6 +9,7 @@
 
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const DynamicsOptions& options)
@@ -87,7 +88,7 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
   // Contacts close and stick at speeds that cannot be told from rest; where rows nearly depend on each other these are
   // met by larger ones of the bodies.
   const double at_rest = attached_.contacts ? 2 * no_speed * attached_.contacts->speed() : 0;
-  if (velocities.changed > 1e-9 && velocities.missed > at_rest) {
+  if (velocities.changed_part > thresholds::contradiction && velocities.missed > at_rest) {
     warnings.push_back(fmt::format("{} did not meet the constraints: changed by up to {:.3g} {} (body \"{}\")",
                                    origin_.given_qd.empty() ? std::string("the given velocities")
                                                             : fmt::format("the velocities at t = {:.12g} s", t_),

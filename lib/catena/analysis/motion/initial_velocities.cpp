@@ -197,10 +197,15 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
   if (!outcome.ok()) return outcome;
   std::fill(qd.begin(), qd.end(), 0.0);
   std::copy(velocity.begin(), velocity.end(), qd.begin());
+  const Scaling scaling(plan, evaluator.length_scale());
+  const double largest =
+      std::max(scaling.coordinate_norm(plan, velocity), scaling.coordinate_norm(plan, wanted.velocity));
   for (const int c : plan.coordinate) {
     const double change = std::abs(velocity[at(c)] - wanted.velocity[at(c)]);
-    if (wanted.given[at(c)] && change > outcome.changed) {
+    const double part = change / (c % 3 == 2 ? 1 : evaluator.length_scale()) / largest;
+    if (wanted.given[at(c)] && part > outcome.changed_part) {
       outcome.changed = change;
+      outcome.changed_part = part;
       outcome.changed_turn = c % 3 == 2;
       outcome.changed_body = plan.model_body[at(c / 3)];
     }

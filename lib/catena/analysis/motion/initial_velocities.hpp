@@ -23,7 +23,8 @@
 namespace catena {
 
 struct VelocityOutcome : Report {
-  double changed = 0;         ///< largest change of a given component, m/s or rad/s
+  double changed = 0;         ///< change of the given component that was changed most, m/s or rad/s
+  double changed_part = 0;    ///< the same in parts of the largest velocity, m/s by the length scale
   bool changed_turn = false;  ///< an angular velocity
   int changed_body = -1;      ///< whose it was, in the model's numbering
   double missed = 0;          ///< by what was asked for, of the equations, m/s; angles times the length scale

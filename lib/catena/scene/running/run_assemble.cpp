@@ -9,6 +9,7 @@
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/assembly_derivatives.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/scene/judging/gap_watch.hpp"
@@ -79,7 +80,7 @@ void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& 
   const VelocityOutcome outcome = find_initial_velocities(equations, analysis.q(), {}, qd);
   if (!outcome.ok()) {
     report.warnings.push_back("initial velocities: " + outcome.message);
-  } else if (outcome.changed > 1e-9) {
+  } else if (outcome.changed_part > thresholds::contradiction) {
     report.warnings.push_back(
         fmt::format("the given velocities do not meet the constraints: dynamics changes them by up to {:.3g} {} "
                     "(body \"{}\")",
