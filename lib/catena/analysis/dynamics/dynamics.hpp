@@ -115,6 +115,7 @@ class Dynamics {
   void look_for_singularity(double t);
   std::string near_branches();
   std::optional<SingularPoint> dead_point_ahead();
+  std::optional<SingularPoint> infinity_ahead();
   std::optional<Report> lock_up_ahead();
   double time_to_dead_point(std::span<const double> w, std::vector<double>& q);
   void give_row_at_lock_up(RowObserver& observer);

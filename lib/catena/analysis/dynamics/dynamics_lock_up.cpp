@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/motion/runaway.hpp"
 #include "catena/analysis/pose/dead_point.hpp"
 #include "catena/analysis/pose/singular_point.hpp"
 #include "catena/linalg/rank/dependence.hpp"
@@ -72,8 +73,27 @@ std::optional<SingularPoint> Dynamics::dead_point_ahead() {
   return point;
 }
 
+// Where no step can be made: the instant at which drivers have led to infinity.
+std::optional<SingularPoint> Dynamics::infinity_ahead() {
+  if (plan_->rows == 0) return {};
+  const std::size_t n = q_.size();
+  const double t = integrator_->time();
+  const std::span<const double> y = integrator_->state();
+  std::vector<double> slope(y.size(), 0.0);
+  if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), std::span(slope).subspan(n, n))) return {};
+  const std::optional<double> instant =
+      instant_at_infinity(evaluator_, t, y.first(n), y.subspan(n, n), std::span(slope).subspan(n, n), run_.grid.last());
+  if (!instant) return {};
+  const std::vector<double> w = vanishing_combination(equations_, t, y.first(n));
+  if (w.empty()) return {};
+  SingularPoint point;
+  put_at_infinity(point, evaluator_, *instant, y.first(n), y.subspan(n, n), w);
+  return point;
+}
+
 std::optional<Report> Dynamics::lock_up_ahead() {
   std::optional<SingularPoint> point = dead_point_ahead();
+  if (!point) point = infinity_ahead();
   if (!point) return {};
   run_.singular_points.push_back(std::move(*point));
   return run_.singular_points.back().report_lock_up(*model_);
@@ -124,6 +144,7 @@ double Dynamics::time_to_dead_point(std::span<const double> w, std::vector<doubl
 // The mechanism where it locks: places and times are known, rates and loads grow without bound.
 void Dynamics::give_row_at_lock_up(RowObserver& observer) {
   const SingularPoint& point = run_.singular_points.back();
+  if (point.at_infinity) return;
   const std::size_t n = q_.size();
   const double none = std::numeric_limits<double>::quiet_NaN();
   row_.y.resize(std::max(row_.y.size(), 2 * n));

@@ -324,6 +324,7 @@ AnalysisReport DynamicsOfIslands::report_of_all(const Part* ended) {
 // The others are elsewhere when one locks, and some have gone past that instant.
 void DynamicsOfIslands::give_row_at_lock_up(Part& locked, const Needs& needs, RowObserver& observer) {
   const double t = locked.end();
+  if (locked.dynamics().singular_points().back().at_infinity) return;
   locked.show_last();
   for (const auto& part : parts_) {
     if (part.get() != &locked && !part->go_again_to(t, needs)) return;

@@ -122,6 +122,7 @@ class Kinematics {
   Report lock_up(SingularPoint point);
   std::optional<SingularPoint> dead_point_here();
   bool locate_lock_up(double target, SingularPoint& point);
+  bool locate_at_infinity(double target, std::span<const double> w, SingularPoint& point);
   void give_row_at_lock_up(const Needs& needs, RowObserver& observer);
 
   // Work along the motion: kinematics_work.cpp.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/motion/runaway.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -40,7 +41,7 @@ Report Kinematics::stuck(double next, double target) {
   }
   if (found && disagreement(evaluator_, w, nu) > clear_disagreement) {
     point.kind = SingularPoint::Kind::lock_up;
-    locate_lock_up(target, point);
+    if (!locate_at_infinity(target, w, point)) locate_lock_up(target, point);
     return lock_up(std::move(point));
   }
   std::size_t heaviest = 0;
@@ -160,9 +161,19 @@ bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   return true;
 }
 
+// False: the place that the drivers ask for does not lie at infinity.
+bool Kinematics::locate_at_infinity(double target, std::span<const double> w, SingularPoint& point) {
+  std::vector<double> qd(now_.q.size(), 0.0), qdd(now_.q.size(), 0.0);
+  if (!solver_.solve_velocity(qd, false) || !solver_.solve_acceleration(qd, qdd, false)) return false;
+  const std::optional<double> t = instant_at_infinity(evaluator_, now_.t, now_.q, qd, qdd, target);
+  if (t) put_at_infinity(point, evaluator_, *t, now_.q, qd, w);
+  return t.has_value();
+}
+
 // A row at the lock-up: places and times are known, rates and loads grow without bound.
 void Kinematics::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
   const SingularPoint& point = singular_points_.back();
+  if (point.at_infinity) return;
   const std::vector<double> none(std::max(now_.q.size(), at(plan().rows)), std::numeric_limits<double>::quiet_NaN());
   const std::span<const double> unknown(none);
   evaluator_.set_time(point.t);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "catena/analysis/kinematics/course/step_rules.hpp"
+#include "catena/analysis/motion/runaway.hpp"
 #include "catena/analysis/motion/step_growth.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/pose/assemble.hpp"
@@ -26,8 +27,6 @@ namespace {
 
 constexpr double tolerance = 1e-13;         // of a step's error, length scales or rad
 constexpr double largest_residual = 1e-11;  // of positions after a step
-// Velocities larger than this multiple of their average are taken to grow without bound.
-constexpr double runaway = 30;
 // Steps that would have to be shorter than this (rad, length scales) may be near a place where branches meet: it is
 // jumped over by one of `reaches`, with an error that is this many tolerances at most.
 constexpr double suspicious_step = 0.03;
@@ -135,10 +134,15 @@ Report MinimumNormMotion::stuck(double target) {
   point.t = t_;
   point.q = q_;
   point.name_bodies(evaluator_, std::span(&qd_, 1));
-  if (least_.size(qd_) * std::abs(t_ - started_) > runaway * travelled_) {
+  if (least_.size(qd_) * std::abs(t_ - started_) > far_away * travelled_) {
+    const bool rates = met && least_.acceleration(qd_, qdd_);
+    if (const auto t = rates ? instant_at_infinity(evaluator_, t_, q_, qd_, qdd_, target) : std::nullopt) {
+      put_at_infinity(point, evaluator_, *t, q_, qd_, least_.multipliers());
+      return singular_points_.emplace_back(std::move(point)).report_lock_up(*model_);
+    }
     point.kind = SingularPoint::Kind::lock_up;
     // q = q* - a sqrt(t* - t): velocities grow with 1 / sqrt(t* - t), their relative growth is 1 / (2 (t* - t)).
-    const double growth = met && least_.acceleration(qd_, qdd_) ? least_.growth(qd_, qdd_) : 0;
+    const double growth = rates ? least_.growth(qd_, qdd_) : 0;
     if (const double rest = 1 / (2 * growth);
         growth != 0 && rest * (target - t_) > 0 && std::abs(rest) <= std::abs(target - t_)) {
       point.t += rest;
@@ -167,6 +171,7 @@ Report MinimumNormMotion::stuck(double target) {
 // A row at the lock-up: places and times are known, rates grow without bound.
 void MinimumNormMotion::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
   const SingularPoint& point = singular_points_.back();
+  if (point.at_infinity) return;
   const std::vector<double> unknown(q_.size(), std::numeric_limits<double>::quiet_NaN());
   const std::span<const double> none;
   std::vector<double> phi(at(plan_->rows));

@@ -144,8 +144,10 @@ std::string SingularPoint::describe_ways() const {
 Report SingularPoint::report_lock_up(const Model& model) const {
   Report report;
   report.status = Status::lock_up;
-  report.message = fmt::format(
-      "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make (a dead point)", t);
+  report.message = fmt::format("lock-up at t = {:.12g} s: the drivers ask for a ", t);
+  report.message += at_infinity && !bodies.empty()
+                        ? fmt::format("place that body \"{}\" would reach only at infinity", bodies.front())
+                        : "motion that the mechanism cannot make (a dead point)";
   if (driver >= 0) {
     report.message +=
         fmt::format("; most concerned: driver \"{}\" at {:.6g}", model.element_name(driver), driver_value);

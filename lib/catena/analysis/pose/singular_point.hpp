@@ -38,6 +38,9 @@ struct SingularPoint {
   double driver_value = 0;                    ///< its value there, m or rad
   /// Whether positions near this one are reached only by moving the drivers: no null vector can be followed.
   bool held_to_second_order = false;
+  /// Of a lock-up: the place that drivers ask for lies at infinity; q is one on the way there, and the first of
+  /// `bodies` the one that runs away.
+  bool at_infinity = false;
 
   /// Names the bodies that take part in motions, given by coordinate.
   void name_bodies(const Evaluator& evaluator, std::span<const std::vector<double>> motions);

@@ -6,6 +6,7 @@ namespace {
 /// The branches in words; where none goes on, that.
 std::vector<std::string> branches_of(const SingularPoint& point) {
   if (!point.branches.empty()) return point.branches;
+  if (point.at_infinity) return {"none: the place lies at infinity"};
   if (point.kind == SingularPoint::Kind::lock_up) return {"none goes on beyond the dead point"};
   return {point.kind == SingularPoint::Kind::isolated ? "none goes on" : "not known"};
 }
