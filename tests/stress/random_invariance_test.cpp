@@ -6,6 +6,7 @@
 #include "oracles/random_seeds.hpp"
 #include "stress/random_analyses.hpp"
 #include "stress/touching_scene.hpp"
+#include "stress/winding_scene.hpp"
 
 namespace catena::testing {
 namespace {
@@ -47,6 +48,21 @@ TEST(RandomInvariance, UnitsDoNotMatterWhereBodiesTouch) {
                   [&](unsigned seed) { return fault_of_units_where_bodies_touch(seed, seen); });
   print_shares("motions with contacts, stops, cables and events in other units", seen);
   EXPECT_GE(seen["ok"], 0.95 * stress_cases(1200));
+}
+
+TEST(RandomInvariance, UnitsDoNotMatterWhereRopesWind) {
+  std::map<std::string, int> seen;
+  expect_no_fault(first_case(), last_case(1600),
+                  [&](unsigned seed) { return fault_of_winding_in_other_units(seed, seen); });
+  print_shares("motions of ropes, planets and cams in other units", seen);
+  EXPECT_GE(seen["ok"], 0.95 * stress_cases(1600));
+}
+
+TEST(RandomInvariance, PlaceDirectionAndMirrorDoNotMatterWhereRopesWind) {
+  std::map<std::string, int> seen;
+  expect_no_fault(first_case(), last_case(1600), [&](unsigned seed) { return fault_of_winding_elsewhere(seed, seen); });
+  print_shares("motions of ropes, planets and cams elsewhere", seen);
+  EXPECT_GE(seen["ok"], 0.95 * stress_cases(1600));
 }
 
 TEST(RandomInvariance, AFarOriginDoesNotMatter) {
