@@ -63,11 +63,11 @@ TEST(KinematicTrials, AnalysesEndWhereThePlaceOnAHollowCamEnds) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
-    // It is hollow from b = m / 5 on: of the last ones by so little that the place jumps by 1/100 ... 1/1000 of it.
+    // It is hollow from b = m / 5 on: of the last ones by so little that the place jumps by 1/100 ... 1/200 of it.
     const bool shallow = seed > 6;
     const int points = shallow ? 720 : 72;
     const double m = random(0.3, 0.6),
-                 hollow = shallow ? 0.2 * (1 + std::pow(10, random(-4, -2.8))) : random(0.24, 0.34);
+                 hollow = shallow ? 0.2 * (1 + std::pow(10, random(-3.3, -2.8))) : random(0.24, 0.34);
     const double b = m * hollow, rate = random(0.5, 2) * (seed % 2 ? 1 : -1);
     const auto turned_back = [&](double a) {
       const double r = m + b * std::cos(2 * a - pi), r1 = -2 * b * std::sin(2 * a - pi),
