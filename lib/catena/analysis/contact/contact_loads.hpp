@@ -76,6 +76,8 @@ class ContactLoads final : public StateLoads {
   void scatter(std::span<ContactLoad> loads) const;
   /// The largest speed at which forces were asked for.
   double speed() const { return speed_; }
+  /// Forgets what was faster: after steps that were tried.
+  void set_speed(double speed) { speed_ = speed; }
   /// Takes note of one before.
   void know_speed(double speed) { speed_ = std::max(speed_, speed); }
   /// Whether rigid places are closed, or exact friction holds or rubs: what a jump of velocities may end.

@@ -79,6 +79,8 @@ class Dynamics {
   const std::vector<int>& acting() const { return run_.acting; }
   std::int64_t next_row() const { return run_.next_row; }
   WorkSoFar work_so_far() const;
+  /// Where `auto` chooses: begins with the method that another phase of the same motion ended with.
+  void begin_with(IntegrationMethod method);
   /// What moved in the last run, J, and in those before it of the same motion: errors are compared with the whole.
   double energy_in_motion() const { return work_.balance ? work_.balance->energy() : work_.earlier_motion; }
   void know_energy(double energy) { work_.earlier_motion = energy; }

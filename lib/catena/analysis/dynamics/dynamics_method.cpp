@@ -147,15 +147,16 @@ std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, doub
       options.tolerance = finer;
       return std::make_unique<Adams>(motion, options);
     case IntegrationMethod::radau:
-      options.tolerance = implicit_part * options_.tolerance;
       return std::make_unique<Radau>(motion, options);
     case IntegrationMethod::alpha:
       return std::make_unique<Alpha>(
-          motion, AlphaOptions{.rho = options_.rho,
-                               .tolerance = options_.step > 0 ? implicit_part * options_.tolerance
-                                                              : second_order_part * std::pow(options_.tolerance, 1.5),
-                               .fixed_step = options_.step,
-                               .horizon = horizon});
+          motion,
+          AlphaOptions{.rho = options_.rho,
+                       .tolerance = options_.step > 0 ? implicit_part * options_.tolerance
+                                                      : second_order_part * std::pow(options_.tolerance, 1.5),
+                       .fixed_step = options_.step,
+                       .horizon = horizon},
+          options);
     case IntegrationMethod::rattle:
       return std::make_unique<Rattle>(motion, options_.step, horizon);
   }

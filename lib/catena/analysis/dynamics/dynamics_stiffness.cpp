@@ -33,6 +33,7 @@ double Dynamics::try_method(IntegrationMethod method, int steps, double limit) {
   std::vector<double> turned(q_.size(), 0.0);
   evaluator_.add_turns(turned);
   const std::vector<CurvePlace> places = evaluator_.curve_places();
+  const double speed = attached_.contacts ? attached_.contacts->speed() : 0;
   const std::unique_ptr<Integrator> trial = make_integrator(*motion_, run_.grid.last());
   trial->remember(integrator_->memory());
   double length = 0;
@@ -50,20 +51,29 @@ double Dynamics::try_method(IntegrationMethod method, int steps, double limit) {
   evaluator_.forget_turns();
   evaluator_.take_turns(turned);
   evaluator_.go_to_curve_places(places);
+  if (attached_.contacts) attached_.contacts->set_speed(speed);
   return length;
 }
 
-// Not where a motion pauses, whose memory holds no method, and not beside contacts, of which a trial would change what
-// they remember.
+void Dynamics::begin_with(IntegrationMethod method) {
+  if (!stiffness_.wanted) return;
+  const bool implicit = method == IntegrationMethod::radau, is_implicit = method_ == IntegrationMethod::radau;
+  if (implicit == is_implicit) return;
+  if (implicit) stiffness_.explicit_method = method_;
+  method_ = implicit ? method : stiffness_.explicit_method;
+}
+
+// Not where a motion pauses, whose memory holds no method.
 void Dynamics::begin_looking_for_stiffness() {
   const std::int64_t steps = evaluator_.counters.steps;
-  stiffness_ = {.wanted = stiffness_.wanted,
-                .may_change = stiffness_.wanted && !attached_.contacts && !origin_.resumed &&
-                              pause_after_ == std::numeric_limits<double>::infinity(),
-                .step = steps,
-                .next = steps + steps_between_looks,
-                .wait = steps_between_looks,
-                .t = t_};
+  stiffness_ = {
+      .wanted = stiffness_.wanted,
+      .may_change = stiffness_.wanted && !origin_.resumed && pause_after_ == std::numeric_limits<double>::infinity(),
+      .step = steps,
+      .next = steps + steps_between_looks,
+      .wait = steps_between_looks,
+      .t = t_,
+      .explicit_method = stiffness_.explicit_method};
   methods_ = {method_};
 }
 

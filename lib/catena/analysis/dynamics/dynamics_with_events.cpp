@@ -148,7 +148,9 @@ void DynamicsWithEvents::go_on_from(const SystemState& state, std::span<const in
   }
   const double energy = dynamics_->energy_in_motion();
   std::shared_ptr<const LawStretches> laws = dynamics_->law_stretches();
+  const IntegrationMethod method = dynamics_->method();
   make_dynamics();
+  dynamics_->begin_with(method);
   dynamics_->start_from(state);
   turn_values_to_bodies(engaged, state);
   dynamics_->know_energy(energy);

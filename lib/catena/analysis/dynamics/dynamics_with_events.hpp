@@ -47,7 +47,8 @@ class DynamicsWithEvents {
 
   const Plan& plan() const { return dynamics_->plan(); }
   IntegrationMethod method() const { return dynamics_->method(); }
-  const std::vector<IntegrationMethod>& methods() const { return dynamics_->methods(); }
+  /// All that were in use, of all phases.
+  const std::vector<IntegrationMethod>& methods() const { return methods_; }
   Evaluator& evaluator() { return dynamics_->evaluator(); }
   /// Told of every phase of the motion; nullptr: none.
   void witness(PhaseWitness* witness) { witness_ = witness; }
@@ -136,6 +137,7 @@ class DynamicsWithEvents {
   std::vector<std::string> inactive_;           // what is said of elements that are released before they are engaged
   std::vector<SingularPoint> singular_points_;  // of the run, in all its phases
   std::vector<Jolt> jolts_;                     // the same
+  std::vector<IntegrationMethod> methods_;      // in use so far
   Pauses pauses_;
   bool resumed_ = false;
   Report taken_up_;                               // whether ropes could be

@@ -1,6 +1,7 @@
 // A run of DynamicsWithEvents from phase to phase, in one go or in parts.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -47,6 +48,7 @@ void DynamicsWithEvents::begin(const TimeGrid& grid, const Needs& needs) {
   run_.rows = rows_before_;
   watch_->rows_given = [this] { return run_.rows; };
   run_.total = {};
+  methods_.clear();
   run_.total.warnings = inactive_;
   singular_points_.clear();
   end_.reset();
@@ -98,6 +100,9 @@ AnalysisReport DynamicsWithEvents::end() {
 void DynamicsWithEvents::take_report() {
   run_.in_phase = false;
   add_part(run_.total, dynamics_->end());
+  for (const IntegrationMethod method : dynamics_->methods()) {
+    if (std::find(methods_.begin(), methods_.end(), method) == methods_.end()) methods_.push_back(method);
+  }
   const std::vector<SingularPoint>& points = dynamics_->singular_points();
   singular_points_.insert(singular_points_.end(), points.begin(), points.end());
   jolts_.insert(jolts_.end(), dynamics_->jolts().begin(), dynamics_->jolts().end());

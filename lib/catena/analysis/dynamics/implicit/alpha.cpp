@@ -20,7 +20,8 @@ constexpr int most_trials = 100;
 
 }  // namespace
 
-Alpha::Alpha(Motion motion, const AlphaOptions& options) : motion_(motion), options_(options), matrix_(motion) {
+Alpha::Alpha(Motion motion, const AlphaOptions& options, const RungeKuttaOptions& across)
+    : CrossingIntegrator(motion, across), options_(options), matrix_(motion) {
   for (auto* y : {&y_, &y_before_, &y_new_, &slope_, &slope_new_, &slope_before_}) y->assign(motion_.size(), 0.0);
   own_.assign(motion_.coordinates(), 0.0);
   own_new_ = shifted_ = own_;
@@ -40,23 +41,35 @@ bool Alpha::start(double t, std::span<const double> y) {
   std::copy(y.begin(), y.end(), y_.begin());
   if (!motion_.derivative(t_, Side::after, y_, slope_)) return false;
   curve_places_ = motion_.equations().evaluator().curve_places();
-  std::copy(accelerations().begin(), accelerations().end(), own_.begin());
-  linearized_ = false;
-  last_h_ = factored_h_ = 0;
+  forget_passages();
+  begin_anew();
   observe(0);
   h_ = scale_.rate() > 0 ? starting_step * std::cbrt(scale_.tolerance()) / scale_.rate()
                          : std::numeric_limits<double>::max();
   return true;
 }
 
-void Alpha::observe(double h) { implicit_step::observe(motion_, scale_, t_, h, y_, slope_); }
+// The next step knows of none before it.
+void Alpha::begin_anew() {
+  std::copy(accelerations().begin(), accelerations().end(), own_.begin());
+  linearized_ = crossing_ = false;
+  last_h_ = factored_h_ = 0;
+}
+
+void Alpha::observe(double h) {
+  implicit_step::observe(motion_, scale_, t_, h, y_, slope_);
+  observe_ratio();
+}
 
 bool Alpha::advance(double limit) {
   const bool fixed = options_.fixed_step > 0;
   Evaluator& evaluator = motion_.equations().evaluator();
   if (fixed) h_ = options_.fixed_step;
-  evaluator.take_turns(motion_.q(std::span(y_)));
-  for (int trial = 0; trial < most_trials; ++trial) {
+  if (!crossing_) {
+    evaluator.take_turns(motion_.q(std::span(y_)));
+    stepped_by_runge_kutta_ = false;
+  }
+  for (int trial = 0; trial < most_trials && !crossing_; ++trial) {
     evaluator.go_to_curve_places(curve_places_);
     const double remaining = limit - t_;
     const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
@@ -65,7 +78,12 @@ bool Alpha::advance(double limit) {
     if (!lands && !fixed && 2 * h > remaining) h = remaining / 2;
     if (h < scale_.smallest_step(t_) && !lands) return false;
     t_new_ = lands ? limit : t_ + h;
-    if (!solve(h)) {
+    const bool solved = solve(h);
+    if (dips()) {
+      crossing_ = true;
+      break;
+    }
+    if (!solved) {
       ++evaluator.counters.rejected;
       if (fixed) return false;
       h_ = h / 2;
@@ -87,7 +105,18 @@ bool Alpha::advance(double limit) {
     if (fixed) return false;
     h_ = h / 2;
   }
-  return false;
+  return crossing_ && advance_by_runge_kutta(limit);
+}
+
+// A step across a singular position.
+bool Alpha::advance_by_runge_kutta(double limit) {
+  const double start = t_;
+  if (!step_by_runge_kutta(limit, h_, scale_, slope_)) return false;
+  if (has_crossed()) {
+    begin_anew();
+    h_ = options_.fixed_step > 0 ? options_.fixed_step : std::min(h_, t_ - start);
+  }
+  return true;
 }
 
 // q1 and v1 from A1.
@@ -205,13 +234,8 @@ void Alpha::accept(double h, double error) {
 }
 
 void Alpha::interpolate(double t, std::span<double> y) {
+  if (stepped_by_runge_kutta_) return runge_kutta_.interpolate(t, y);
   implicit_step::interpolate({t_before_, t_, y_before_, y_, slope_before_, slope_}, t, motion_.coordinates(), y);
-}
-
-IntegratorMemory Alpha::memory() const {
-  IntegratorMemory memory = scale_.memory();
-  memory.step = h_;
-  return memory;
 }
 
 }  // namespace catena

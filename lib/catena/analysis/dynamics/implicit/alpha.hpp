@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "catena/analysis/dynamics/implicit/implicit_matrix.hpp"
+#include "catena/analysis/dynamics/integrators/crossing_integrator.hpp"
 #include "catena/analysis/dynamics/integrators/error_scale.hpp"
-#include "catena/analysis/dynamics/integrators/integrator.hpp"
 
 namespace catena {
 
@@ -31,17 +31,20 @@ struct AlphaOptions {
   double horizon = 0;        ///< s, where the run ends
 };
 
-class Alpha final : public Integrator {
+class Alpha final : public CrossingIntegrator {
  public:
-  Alpha(Motion motion, const AlphaOptions& options);
+  /// `across`: of Runge-Kutta, which takes the steps across singular positions.
+  Alpha(Motion motion, const AlphaOptions& options, const RungeKuttaOptions& across);
 
   bool start(double t, std::span<const double> y) override;
   bool advance(double limit) override;
   /// By the cubic through places and velocities of both ends, and that through velocities and accelerations.
   void interpolate(double t, std::span<double> y) override;
-  IntegratorMemory memory() const override;
-  void remember(const IntegratorMemory& memory) override { scale_.remember(memory); }
-  bool may_pause() const override { return true; }
+  IntegratorMemory memory() const override { return memory_of(scale_, h_); }
+  void remember(const IntegratorMemory& memory) override {
+    scale_.remember(memory);
+    usual_ratio_ = memory.usual_ratio;
+  }
   /// Not known: errors of phase add up.
   void add_error(std::span<double> error) const override {
     std::fill(error.begin(), error.end(), std::numeric_limits<double>::quiet_NaN());
@@ -59,8 +62,9 @@ class Alpha final : public Integrator {
   bool finish();
   void accept(double h, double error);
   void observe(double h);
+  void begin_anew();
+  bool advance_by_runge_kutta(double limit);
 
-  Motion motion_;
   AlphaOptions options_;
   ImplicitMatrix matrix_;
   ErrorScale scale_;

@@ -1,7 +1,9 @@
 // What the steps of implicit methods, and of Rattle, have in common: how their ends are kept on the constraints and
-// looked at, how changes are measured, and the cubic between two ends.
+// looked at, how changes are measured, and the polynomials between two ends.
 //
 //   y(t) = (1 - e) y0 + e y1 + h s (1 - s)^2 y0' - h s^2 (1 - s) y1'        s = (t - t0) / h,   e = s^2 (3 - 2 s)
+//   q(t) = q0 + h (s v0 + h s^2 a0 / 2) + s^3 (d (10 - 15 s + 6 s^2) + w (-4 + 7 s - 3 s^2) + b (1 - 2 s + s^2) / 2)
+//          d = q1 - q0 - h v0 - h^2 a0 / 2,   w = h (v1 - v0 - h a0),   b = h^2 (a1 - a0);   v(t) = q'(t)
 //
 // States as in motion.hpp.
 #pragma once
@@ -20,6 +22,10 @@ struct Ends {
 };
 /// The cubic of places and velocities, and that of velocities and accelerations; n: coordinates.
 void interpolate(const Ends& ends, double t, std::size_t n, std::span<double> y);
+
+/// Places by the polynomial of order 5 through places, velocities and accelerations of both ends, velocities by its
+/// derivative; what follows them by the cubic.
+void interpolate_quintic(const Ends& ends, double t, std::size_t n, std::span<double> y);
 
 /// Moves the end of a step onto the constraints, with factors made there, and leaves the residual of its places, in
 /// length scales or rad, in `residual`. False: it is too far from them.

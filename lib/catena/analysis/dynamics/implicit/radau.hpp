@@ -7,13 +7,15 @@
 // is repeated here; y1 is projected onto the constraints. Newton's method solves for all Z at once with one matrix,
 // that of implicit_matrix.hpp: in the basis in which A^-1 is diagonal the stages part into one real and one complex
 // system of the size of the mechanism. The matrix is kept while it converges well, its factors while the step keeps its
-// length. The first guess is the polynomial of the step before; that polynomial also gives the rows between steps.
+// length. The first guess is the polynomial of the step before.
 //
-// Error of a step: e = (g I / h - J)^-1 (f(y) + (e_1 Z_1 + e_2 Z_2 + e_3 Z_3) / h), of order 3 and damped in stiff
-// directions. The integrals that ride along (motion.hpp) have no part in Newton's method: they are summed up with the
-// same weights. Across singular positions RungeKutta takes the steps, as it does for Adams. Friction that is mu times a
-// multiplier has no part in the matrix. Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, IV.8;
-// K. Gustafsson, ACM TOMS 20 (1994) for the choice of steps.
+// Estimate of a step's error: e = (g I / h - J)^-1 (f(y) + (e_1 Z_1 + e_2 Z_2 + e_3 Z_3) / h), of order 3 and damped in
+// stiff directions. The error itself, of order 5, goes with e^(5/4) then: a tolerance x is one of 1.5 x^(4/5) of e.
+// Where steps have to be repeated the motion is not smooth enough for that, and e is held to the tolerance itself. The
+// integrals that ride along (motion.hpp) have no part in Newton's method: they are summed up with the same weights.
+// Across singular positions RungeKutta takes the steps, as it does for Adams. Friction that is mu times a multiplier
+// has no part in the matrix. Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, IV.8; K.
+// Gustafsson, ACM TOMS 20 (1994) for the choice of steps.
 #pragma once
 
 #include <array>
@@ -21,7 +23,8 @@
 #include <vector>
 
 #include "catena/analysis/dynamics/implicit/implicit_matrix.hpp"
-#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+#include "catena/analysis/dynamics/implicit/implicit_step.hpp"
+#include "catena/analysis/dynamics/integrators/crossing_integrator.hpp"
 
 namespace catena {
 
@@ -34,20 +37,18 @@ struct RadauTableau {
 };
 const RadauTableau& radau_tableau();
 
-class Radau final : public Integrator {
+class Radau final : public CrossingIntegrator {
  public:
-  /// `options`: the order and the way of keeping constraints do not count.
+  /// `options`: those of Runge-Kutta, whose order and way of keeping constraints do not count.
   Radau(Motion motion, const RungeKuttaOptions& options);
 
   bool start(double t, std::span<const double> y) override;
   bool advance(double limit) override;
-  /// By the polynomial of the stages, of order 3, as good as the estimate of the error.
+  /// By both ends of the step and their accelerations, of order 5; beside what dies away within it by the polynomial of
+  /// the stages, of order 3, as good as the estimate of the error.
   void interpolate(double t, std::span<double> y) override;
-  std::vector<std::string> remarks() const override;
-  std::int64_t straight_passages() const override { return runge_kutta_.straight_passages(); }
-  IntegratorMemory memory() const override;
+  IntegratorMemory memory() const override { return memory_of(scale_, h_); }
   void remember(const IntegratorMemory& memory) override;
-  bool may_pause() const override { return !crossing_; }
   /// Not known: the estimate is of two orders less than the step.
   void add_error(std::span<double> error) const override {
     std::fill(error.begin(), error.end(), std::numeric_limits<double>::quiet_NaN());
@@ -63,8 +64,10 @@ class Radau final : public Integrator {
   static constexpr int most_corrections = 7;
   static constexpr double keeps_matrix = 1e-3;
   enum class Newton { converged, slow, failed };
+  enum class Smooth { unknown, yes, no };
   void forget();
   void predict(double h);
+  bool linearize(double h);
   bool prepare(double h);
   Newton solve_stages(double h);
   bool correct(double h, double& change);
@@ -76,23 +79,20 @@ class Radau final : public Integrator {
   void accept(double h, double error);
   void reject(double h, double error);
   void observe(double h);
-  void remember_ratio();
-  bool dips() const;
+  bool is_smooth();
+  implicit_step::Ends ends() const { return {t_before_, t_, y_before_, y_, slope_before_, slope_}; }
   bool advance_by_runge_kutta(double limit);
 
-  Motion motion_;
   RungeKuttaOptions options_;
-  RungeKutta runge_kutta_;
   ImplicitMatrix matrix_;
   ErrorScale scale_;
   double h_ = 0, t_new_ = 0, factored_h_ = 0, last_h_ = 0, last_error_ = 0;
   bool linearized_ = false, fresh_ = false, has_stages_ = false, rejected_ = false, first_ = true;
-  bool crossing_ = false, stepped_by_runge_kutta_ = false;
-  double convergence_ = 0, usual_ratio_ = 1e-300, largest_ratio_ = 0;
+  Smooth smooth_ = Smooth::unknown;  // the last step
+  double convergence_ = 0;
   int corrections_ = 0;
-  std::int64_t crossing_steps_ = 0;
   std::array<std::vector<double>, 3> z_, last_z_, f_, residual_;  // of the stages; of the step before
-  std::vector<double> y_before_, y_new_, y_stage_, slope_, error_;
+  std::vector<double> y_before_, y_new_, y_stage_, slope_, slope_before_, error_;
 };
 
 }  // namespace catena

@@ -42,12 +42,21 @@ void Radau::predict(double h) {
   }
 }
 
+// Within the step, where its second stage is expected: what the matrix misses at the stages is half of what it would at
+// one end. Multipliers are those of that place: the last evaluation may be of another one, or of a row.
+bool Radau::linearize(double h) {
+  const double t = has_stages_ ? t_ + radau_tableau().c[1] * h : t_;
+  std::copy(y_.begin(), y_.end(), y_stage_.begin());
+  for (std::size_t k = 0; k < 2 * motion_.coordinates(); ++k) y_stage_[k] += z_[1][k];
+  if (motion_.derivative(t, Side::after, y_stage_, error_) && matrix_.linearize(t, Side::after, y_stage_)) return true;
+  return motion_.derivative(t_, Side::after, y_, error_) && matrix_.linearize(t_, Side::after, y_);
+}
+
 // The matrix for a step of this length.
 bool Radau::prepare(double h) {
   if (linearized_ && factored_h_ == h) return true;
   if (!linearized_) {
-    // Multipliers of y: those of the last evaluation may be of a stage, or of a row.
-    if (!motion_.derivative(t_, Side::after, y_, y_stage_) || !matrix_.linearize(t_, Side::after, y_)) return false;
+    if (!linearize(h)) return false;
     linearized_ = fresh_ = true;
   }
   const RadauTableau& table = radau_tableau();

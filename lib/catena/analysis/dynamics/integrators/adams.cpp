@@ -1,12 +1,8 @@
 #include "catena/analysis/dynamics/integrators/adams.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
@@ -16,19 +12,16 @@ constexpr double steady_error[] = {0,      0.5,     0.0833,  0.0417,  0.0264,  0
                                    0.0114, 0.00936, 0.00789, 0.00679, 0.00592, 0.00524, 0.00468};
 constexpr double first_step = 0.25;   // parts of the time scale, times the root of the tolerance
 constexpr double removed_part = 0.1;  // that counts of an error which the projection removes
-constexpr double forgotten = 0.97;    // of what was usual, at every step
 constexpr std::size_t block = 256;    // entries that stay in the first cache while all differences are added
 
 }  // namespace
 
-Adams::Adams(Motion motion, const RungeKuttaOptions& options)
-    : motion_(motion), options_(options), runge_kutta_(motion, options) {
+Adams::Adams(Motion motion, const RungeKuttaOptions& options) : CrossingIntegrator(motion, options), options_(options) {
   const std::size_t size = motion_.size();
   for (std::vector<double>* y : {&y_, &y_new_, &slope_}) y->assign(size, 0.0);
   difference_.assign(most + 3, std::vector<double>(size - motion_.coordinates(), 0.0));
   predicted_.assign(size - motion_.coordinates(), 0.0);
   change_.assign(size - motion_.coordinates(), 0.0);
-  usual_ratio_ = std::max(usual_ratio_, options.usual_ratio);
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
   scale_.length = motion_.length_scale();
@@ -44,8 +37,7 @@ bool Adams::start(double t, std::span<const double> y) {
   scale_.observe(t_, 0, motion_.q(state).first(motion_.moving()), motion_.qd(state).first(motion_.moving()),
                  motion_.qd(k).first(motion_.moving()), motion_.equations().applied_forces(),
                  motion_.equations().smallest_pivot_ratio());
-  largest_ratio_ = 0;
-  stepped_by_runge_kutta_ = false;
+  forget_passages();
   observe_ratio();
   forget();
   return true;
@@ -61,17 +53,6 @@ void Adams::forget() {
   crossing_ = false;
   h_ = scale_.rate() > 0 ? first_step * std::sqrt(scale_.tolerance()) / scale_.rate()
                          : std::numeric_limits<double>::max();
-}
-
-void Adams::observe_ratio() {
-  const double ratio = motion_.equations().smallest_pivot_ratio();
-  usual_ratio_ = std::max(usual_ratio_, ratio);
-  largest_ratio_ = std::max(ratio, forgotten * largest_ratio_);
-}
-
-bool Adams::dips() const {
-  const double ratio = motion_.equations().smallest_pivot_ratio();
-  return ratio < std::min(dependence::singular_passage * usual_ratio_, dependence::unusual * largest_ratio_);
 }
 
 // Positions, velocities and derivatives that the polynomial through the last k points gives for t_new_.
@@ -245,25 +226,11 @@ void Adams::interpolate(double t, std::span<double> y) {
   }
 }
 
-IntegratorMemory Adams::memory() const {
-  IntegratorMemory memory = scale_.memory();
-  memory.step = h_;
-  memory.usual_ratio = usual_ratio_;
-  return memory;
-}
+IntegratorMemory Adams::memory() const { return memory_of(scale_, h_); }
 
 void Adams::remember(const IntegratorMemory& memory) {
   scale_.remember(memory);
   usual_ratio_ = memory.usual_ratio;
-}
-
-std::vector<std::string> Adams::remarks() const {
-  std::vector<std::string> all;
-  if (crossing_steps_ > 0) {
-    all.push_back(fmt::format("Runge-Kutta took {} steps across nearly singular positions", crossing_steps_));
-  }
-  runge_kutta_.remark_on_branches(all);
-  return all;
 }
 
 }  // namespace catena

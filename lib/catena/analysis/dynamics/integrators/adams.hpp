@@ -15,11 +15,11 @@
 #include <algorithm>
 
 #include "catena/analysis/dynamics/integrators/adams_history.hpp"
-#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+#include "catena/analysis/dynamics/integrators/crossing_integrator.hpp"
 
 namespace catena {
 
-class Adams final : public Integrator {
+class Adams final : public CrossingIntegrator {
  public:
   /// `options`: the order does not count.
   Adams(Motion motion, const RungeKuttaOptions& options);
@@ -28,12 +28,9 @@ class Adams final : public Integrator {
   bool advance(double limit) override;
   /// By the polynomial of the last step, one order above the predictor's.
   void interpolate(double t, std::span<double> y) override;
-  std::vector<std::string> remarks() const override;
-  std::int64_t straight_passages() const override { return runge_kutta_.straight_passages(); }
   /// Its differences are not included: an integrator that takes over this memory starts with a short step of order 1.
   IntegratorMemory memory() const override;
   void remember(const IntegratorMemory& memory) override;
-  bool may_pause() const override { return !crossing_; }
   void add_error(std::span<double> error) const override;
   std::span<const double> accelerations() const override { return std::span(slope_).first(motion_.coordinates()); }
   double rate() const override { return scale_.rate(); }
@@ -65,20 +62,15 @@ class Adams final : public Integrator {
   void choose(double h, const Errors& errors, bool lower, double above);
   double compared_with_end(double h, double error);
   void fail(double h, double error, bool lower);
-  void observe_ratio();
-  bool dips() const;
 
-  Motion motion_;
   RungeKuttaOptions options_;
-  RungeKutta runge_kutta_;
   ErrorScale scale_;
   AdamsHistory history_;
   AdamsHistory::Weights weights_, inside_;
   std::size_t k_ = 1, k_before_ = 0;  // order of the predictor; of the last step's
-  double h_ = 0, t_new_ = 0, largest_ratio_ = 0, usual_ratio_ = 1e-300;
-  bool starting_ = true, crossing_ = false, stepped_by_runge_kutta_ = false;
+  double h_ = 0, t_new_ = 0;
+  bool starting_ = true;
   int failures_ = 0;
-  std::int64_t crossing_steps_ = 0;
   std::vector<std::vector<double>> difference_;  // of [qdd, power], numbered from 1
   std::vector<double> y_new_, slope_;
   std::vector<double> predicted_, change_;  // [qdd, power]; what was evaluated less what was predicted

@@ -141,34 +141,16 @@ void Adams::choose(double h, const Errors& errors, bool lower, double above) {
 
 // A step of Runge-Kutta: across a singular position, or one of the first of a fixed length.
 bool Adams::advance_by_runge_kutta(double limit) {
-  const bool fixed = options_.fixed_step > 0;
-  if (!stepped_by_runge_kutta_ || runge_kutta_.time() != t_) {
-    motion_.equations().evaluator().go_to_curve_places(curve_places_);
-    if (!runge_kutta_.take_over(t_, y_, longer * h_, scale_, usual_ratio_)) return false;
-  }
-  const bool advanced = runge_kutta_.advance(limit);
-  culprit_ = runge_kutta_.culprit();
-  if (!advanced) return false;
-  const double h = runge_kutta_.time() - t_;
-  if (!crossing_) predict(h);
-  t_before_ = t_;
-  t_ = runge_kutta_.time();
-  position_residual_ = runge_kutta_.position_residual();
-  std::copy(runge_kutta_.state().begin(), runge_kutta_.state().end(), y_.begin());
-  std::copy(runge_kutta_.slope().begin(), runge_kutta_.slope().end(), slope_.begin());
-  scale_ = runge_kutta_.scale();
-  curve_places_ = motion_.equations().evaluator().curve_places();
-  stepped_by_runge_kutta_ = true;
-  observe_ratio();
+  const double start = t_;
+  if (!step_by_runge_kutta(limit, longer * h_, scale_, slope_)) return false;
+  const double h = t_ - start;
   if (!crossing_) {
+    predict(h);
     update(h);
     ++k_;
-    return true;
-  }
-  ++crossing_steps_;
-  if (runge_kutta_.pivot_ratio() > dependence::behind_passage && !runge_kutta_.dips()) {
+  } else if (has_crossed()) {
     forget();
-    h_ = fixed ? options_.fixed_step : std::min(h_, h);
+    h_ = options_.fixed_step > 0 ? options_.fixed_step : std::min(h_, h);
   }
   return true;
 }

@@ -16,6 +16,9 @@
 // which constraints transmit. The resulting errors of velocities and positions in a step of size h are ignored: where
 // loads are in balance and only rounding moves the bodies, no step would be short enough otherwise.
 //
+// Where a method's estimate is of a lower order than its error, as that of Radau, a tolerance x of the error is one of
+// factor x^power of the estimate: see loosen().
+//
 // tolerance: `step_tolerance` of a run of up to n0 = 200 radians of V. In a longer one errors of energy become errors
 // of phase, so that errors of steps add up with the square of the length: they are allowed (n0/n)^2 of it, n = integral
 // of V over the whole run, estimated with the present V. Never less than double precision allows.
@@ -59,6 +62,21 @@ class ErrorScale {
     radians_ = memory.radians;
   }
 
+  /// Tolerances of steps are of an estimate that is of a lower order than the error: factor tolerance^power.
+  void loosen(double factor, double power) {
+    factor_ = factor;
+    power_ = power;
+    set_tolerances();
+  }
+  /// What another one knows of the motion; the tolerance stays one of this method's estimate.
+  void take_over(const ErrorScale& other) {
+    const double factor = factor_, power = power_;
+    *this = other;
+    loosen(factor, power);
+  }
+  /// What an error may be, as a part of tolerance(), if the estimate is of no higher order than the error.
+  double strict_part() const { return strict_ / tolerance_; }
+
   double rate() const { return rate_; }
   double tolerance() const { return tolerance_; }
   /// Of an error of position and of velocity v at coordinate c that count as much as the tolerance; the latter is zero
@@ -80,7 +98,7 @@ class ErrorScale {
   /// size h, for at a start where they grow from zero those of the beginning say nothing.
   double size_of_work(double error, double begin, double end, double h, std::span<const double> loads) const {
     const double energy = root_energy_ * root_energy_ + std::max(std::abs(end), std::abs(end - begin));
-    double allowed = work_part * step_tolerance * energy;
+    double allowed = work_part * loosened(step_tolerance) * energy;
     if (error > allowed) allowed = std::max(allowed, work_of_nothing(h, loads));
     return allowed > 0 ? error / allowed : 0;
   }
@@ -119,14 +137,20 @@ class ErrorScale {
     }
     radians_ += rate_ * std::abs(step);
     const double part = std::min(1.0, brief_run / (radians_ + rate_ * std::max(horizon - t, 0.0)));
-    tolerance_ = std::max(step_tolerance * part * part, least_tolerance);
+    strict_ = std::max(step_tolerance * part * part, least_tolerance);
     double farthest = 0;
     for (std::size_t c = 0; c + 2 < q.size(); c += 3)
       farthest = std::max({farthest, std::abs(q[c]), std::abs(q[c + 1])});
-    place_tolerance_ = std::max(tolerance_, thresholds::few_roundings * farthest / length);
+    place_rounding_ = thresholds::few_roundings * farthest / length;
+    set_tolerances();
   }
 
  private:
+  void set_tolerances() {
+    tolerance_ = loosened(strict_);
+    place_tolerance_ = std::max(tolerance_, place_rounding_);
+  }
+  double loosened(double tolerance) const { return power_ == 1 ? tolerance : factor_ * std::pow(tolerance, power_); }
   double rounding(std::size_t c) const {
     return condition_ * thresholds::few_roundings * std::min(acceleration_, force_ * inverse_[c]);
   }
@@ -157,7 +181,8 @@ class ErrorScale {
   static constexpr double work_part = 100;
   static constexpr double brief_run = 200, least_tolerance = 1e-15;
   double rate_ = 0, root_energy_ = 0, radians_ = 0, tolerance_ = 0;
-  double place_tolerance_ = 0;  // of lengths, in parts of L
+  double place_tolerance_ = 0, place_rounding_ = 0;  // of lengths, in parts of L
+  double strict_ = 0, factor_ = 1, power_ = 1;
   double condition_ = 1;
   double force_ = 0, acceleration_ = 0;         // N, and in units: largest of the loads and of what they would do alone
   std::vector<double> mass_, speed_, inverse_;  // speed_: of a coordinate that has 1 J; inverse_: units / s^2 a N

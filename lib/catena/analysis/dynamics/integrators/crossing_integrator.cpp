@@ -1,0 +1,77 @@
+#include "catena/analysis/dynamics/integrators/crossing_integrator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "catena/linalg/rank/dependence.hpp"
+
+namespace catena {
+namespace {
+
+constexpr double usual_ratios_forgotten = 0.97;  // of what was usual, at every step
+
+}  // namespace
+
+CrossingIntegrator::CrossingIntegrator(Motion motion, const RungeKuttaOptions& options)
+    : motion_(motion), runge_kutta_(motion, options), usual_ratio_(std::max(1e-300, options.usual_ratio)) {}
+
+void CrossingIntegrator::forget_passages() {
+  largest_ratio_ = 0;
+  crossing_ = stepped_by_runge_kutta_ = false;
+}
+
+void CrossingIntegrator::observe_ratio() {
+  const double ratio = motion_.equations().smallest_pivot_ratio();
+  usual_ratio_ = std::max(usual_ratio_, ratio);
+  largest_ratio_ = std::max(ratio, usual_ratios_forgotten * largest_ratio_);
+}
+
+bool CrossingIntegrator::dips() const {
+  const double ratio = motion_.equations().smallest_pivot_ratio();
+  return ratio < std::min(dependence::singular_passage * usual_ratio_, dependence::unusual * largest_ratio_);
+}
+
+bool CrossingIntegrator::step_by_runge_kutta(double limit, double first, ErrorScale& scale, std::span<double> slope) {
+  if (!stepped_by_runge_kutta_ || runge_kutta_.time() != t_) {
+    motion_.equations().evaluator().go_to_curve_places(curve_places_);
+    ErrorScale strict = scale;
+    strict.loosen(1, 1);
+    if (!runge_kutta_.take_over(t_, y_, first, strict, usual_ratio_)) return false;
+  }
+  const bool advanced = runge_kutta_.advance(limit);
+  culprit_ = runge_kutta_.culprit();
+  if (!advanced) return false;
+  t_before_ = t_;
+  t_ = runge_kutta_.time();
+  position_residual_ = runge_kutta_.position_residual();
+  std::copy(runge_kutta_.state().begin(), runge_kutta_.state().end(), y_.begin());
+  std::copy(runge_kutta_.slope().begin(), runge_kutta_.slope().end(), slope.begin());
+  scale.take_over(runge_kutta_.scale());
+  curve_places_ = motion_.equations().evaluator().curve_places();
+  stepped_by_runge_kutta_ = true;
+  observe_ratio();
+  return true;
+}
+
+bool CrossingIntegrator::has_crossed() {
+  ++crossing_steps_;
+  return runge_kutta_.pivot_ratio() > dependence::behind_passage && !runge_kutta_.dips();
+}
+
+IntegratorMemory CrossingIntegrator::memory_of(const ErrorScale& scale, double step) const {
+  IntegratorMemory memory = scale.memory();
+  memory.step = step;
+  memory.usual_ratio = usual_ratio_;
+  return memory;
+}
+
+std::vector<std::string> CrossingIntegrator::remarks() const {
+  std::vector<std::string> all;
+  if (crossing_steps_ > 0)
+    all.push_back(fmt::format("Runge-Kutta took {} steps across nearly singular positions", crossing_steps_));
+  runge_kutta_.remark_on_branches(all);
+  return all;
+}
+
+}  // namespace catena

@@ -1,0 +1,46 @@
+// What methods have in common that leave singular positions to Runge-Kutta: it makes the steps from where pivots of the
+// constraints dip until the mechanism is behind the passage, and the method starts anew there.
+//
+// A dip: the smallest pivot ratio is below `singular_passage` of the largest so far and `unusual` beside those of the
+// last steps (dependence.hpp). Runge-Kutta has its own copy of the state, continues with the same scale of errors
+// (error_scale.hpp) and takes whole turns out of it: they must be taken only once. Times in s.
+#pragma once
+
+#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+
+namespace catena {
+
+class CrossingIntegrator : public Integrator {
+ public:
+  std::vector<std::string> remarks() const override;
+  std::int64_t straight_passages() const override { return runge_kutta_.straight_passages(); }
+  bool may_pause() const override { return !crossing_; }
+
+ protected:
+  CrossingIntegrator(Motion motion, const RungeKuttaOptions& options);
+
+  /// At a start: neither crosses, nor knows the pivots of places before.
+  void forget_passages();
+  /// Takes note of the pivots of the last evaluation.
+  void observe_ratio();
+  /// Whether they are those of a singular position nearby.
+  bool dips() const;
+  /// A step of Runge-Kutta from time() and state(), which are its end afterwards, as is `slope` (y'); `first`: size of
+  /// the first one, s. False: none can be made.
+  bool step_by_runge_kutta(double limit, double first, ErrorScale& scale, std::span<double> slope);
+  /// Counts a step across, and says whether the passage lies behind it: then another method may go on.
+  bool has_crossed();
+  /// The memory of a scale, with step (s) and pivots.
+  IntegratorMemory memory_of(const ErrorScale& scale, double step) const;
+
+  Motion motion_;
+  RungeKutta runge_kutta_;
+  double usual_ratio_ = 1e-300;
+  bool crossing_ = false, stepped_by_runge_kutta_ = false;
+
+ private:
+  double largest_ratio_ = 0;
+  std::int64_t crossing_steps_ = 0;
+};
+
+}  // namespace catena
