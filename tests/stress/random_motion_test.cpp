@@ -46,12 +46,19 @@ std::string dishonest(const AnalysisReport& report) {
   return "";
 }
 
-std::string dynamics_fault(unsigned seed, std::map<std::string, int>& seen) {
+/// Of methods, with tolerances of 10^-first ... 10^-(first + 2 step).
+struct MethodsInTrial {
+  std::vector<std::string> methods;
+  int first, step;
+};
+
+std::string dynamics_fault(unsigned seed, const MethodsInTrial& trial, std::map<std::string, int>& seen) {
   RandomScene random(seed, RandomScene::Forces::moving);
   random.set_moving();
-  static const char* const methods[] = {"auto", "rk8", "rk5", "adams", "baumgarte", "partitioning"};
-  const std::string method = methods[random.pick(6)];
-  const double tolerance = std::pow(10.0, -2 * random.pick(3) - 6), until = random.uniform(0.3, 2) / random.pace;
+  const std::string method =
+      trial.methods[static_cast<std::size_t>(random.pick(static_cast<int>(trial.methods.size())))];
+  const double tolerance = std::pow(10.0, -trial.step * random.pick(3) - trial.first);
+  const double until = random.uniform(0.3, 2) / random.pace;
   random.scene["analyses"] = {{{"type", "dynamics"},
                                {"until", until},
                                {"every", until / 2},
@@ -175,8 +182,17 @@ std::string kinematics_fault(unsigned seed, std::map<std::string, int>& seen) {
 
 TEST(RandomMotion, DynamicsIsThatOfADenseFormulation) {
   std::map<std::string, int> seen;
-  expect_no_fault(first_case(), last_case(2000), [&](unsigned seed) { return dynamics_fault(seed, seen); });
+  const MethodsInTrial trial{{"auto", "rk8", "rk5", "adams", "baumgarte", "partitioning"}, 6, 2};
+  expect_no_fault(first_case(), last_case(2000), [&](unsigned seed) { return dynamics_fault(seed, trial, seen); });
   print_shares("dynamics of random mechanisms", seen);
+}
+
+TEST(RandomMotion, ImplicitMethodsMoveAsADenseFormulation) {
+  std::map<std::string, int> seen;
+  const MethodsInTrial radau{{"radau"}, 3, 3}, alpha{{"alpha"}, 3, 1};
+  expect_no_fault(first_case(), last_case(1000), [&](unsigned seed) { return dynamics_fault(seed, radau, seen); });
+  expect_no_fault(first_case(), last_case(500), [&](unsigned seed) { return dynamics_fault(seed, alpha, seen); });
+  print_shares("radau and alpha of random mechanisms", seen);
 }
 
 TEST(RandomMotion, DrivenOnesMoveAsTheirVelocitiesIntegrated) {

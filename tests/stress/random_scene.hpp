@@ -115,6 +115,20 @@ class RandomScene {
                             return at - Jet{start} - Real(c1) * t - Real(c2) * (t * t);
                           }});
   }
+  /// A bushing, or a spring between two points, relaxed as given, of stiffness k, N/m, and damping c, N s/m.
+  void add_relaxed(int i, int j, double k, double c, bool bushing) {
+    if (i == j) i = -1;
+    const Place at = somewhere(), other = somewhere();
+    if (bushing) {
+      const Pose here = i < 0 ? Pose{{}, 0} : poses_[static_cast<std::size_t>(i)];
+      const double turns = pick(2) ? size * size * uniform(0.01, 1) : 0;
+      push_bushing(
+          i, j, local(i, at), local(j, at),
+          {k, k * uniform(0.1, 1), k * turns, c, c, c * turns, poses_[static_cast<std::size_t>(j)].angle - here.angle});
+    } else {
+      push_spring(i, j, local(i, at), local(j, other), k, c, distance(at, other));
+    }
+  }
 
  private:
   struct Pose {
@@ -299,29 +313,50 @@ class RandomScene {
     dense.rows.back().period = dense.rows[first + count - 1].period;
   }
 
+  using BodyPlace = const JetPlace&;
+  void push(Json entry, DenseMechanism::Load load) {
+    types.push_back(entry["type"]);
+    if (entry != last_force_) scene["forces"].push_back(entry);
+    last_force_ = entry;
+    dense.loads.push_back(std::move(load));
+  }
+  static auto spring(Real stiffness, Real damping, Real rest) {
+    return std::pair([=](Jet s, Real, BodyPlace) { return -stiffness * (s.f - rest) - damping * s.d; },
+                     [=](Jet s) { return stiffness / 2 * ((s - Jet{rest}) * (s - Jet{rest})); });
+  }
+  void push_spring(int i, int j, Place si, Place sj, double k, double c, double rest) {
+    const auto [force, energy] = spring(k, c, rest);
+    push({{"type", "spring_damper"}, {"i", end(i, si)}, {"j", end(j, sj)}, {"k", k}, {"c", c}, {"length", rest}},
+         {i, j, [=](BodyPlace a, BodyPlace b, Jet) { return norm(b.point(sj) - a.point(si)); }, force, energy});
+  }
+  struct BushingNumbers {
+    double kx, ky, kt, cx, cy, ct, angle;
+  };
+  void push_bushing(int i, int j, Place si, Place sj, const BushingNumbers& n) {
+    const Json entry = {{"type", "bushing"}, {"i", end(i, si)}, {"j", end(j, sj)}, {"kx", n.kx}, {"ky", n.ky},
+                        {"kt", n.kt},        {"cx", n.cx},      {"cy", n.cy},      {"ct", n.ct}, {"angle", n.angle}};
+    const auto along = [=](double x, double y) {
+      return [=](BodyPlace a, BodyPlace b, Jet) {
+        return dot(catena::testing::turned(a.phi, {x, y}), b.point(sj) - a.point(si));
+      };
+    };
+    const auto [fx, vx] = spring(n.kx, n.cx, 0);
+    const auto [fy, vy] = spring(n.ky, n.cy, 0);
+    const auto [ft, vt] = spring(n.kt, n.ct, n.angle);
+    push(entry, {i, j, along(1, 0), fx, vx});
+    push(entry, {i, j, along(0, 1), fy, vy});
+    push(entry, {i, j, [](BodyPlace a, BodyPlace b, Jet) { return b.phi - a.phi; }, ft, vt});
+  }
+
   void add_force(int i, int j) {
     if (i == j) i = -1;
     const double weight = mass_ * 9.81, k = weight / size * std::pow(10.0, uniform(-1, 1));
     const double c = forces_ == Forces::moving && pick(2) ? k / pace * uniform(0, 0.5) : 0;
     const Place at = somewhere(), other = somewhere(), si = local(i, at), sj = local(j, other);
-    using P = const JetPlace&;
-    const auto push = [&](Json entry, DenseMechanism::Load load) {
-      types.push_back(entry["type"]);
-      if (entry != last_force_) scene["forces"].push_back(entry);
-      last_force_ = entry;
-      dense.loads.push_back(std::move(load));
-    };
-    const auto spring = [](Real stiffness, Real damping, Real rest) {
-      return std::pair([=](Jet s, Real, P) { return -stiffness * (s.f - rest) - damping * s.d; },
-                       [=](Jet s) { return stiffness / 2 * ((s - Jet{rest}) * (s - Jet{rest})); });
-    };
-    const auto h = [si, sj](P a, P b) { return b.point(sj) - a.point(si); };
+    using P = BodyPlace;
     const int kind = pick(4);
     if (kind == 0) {
-      const double rest = distance(at, other) * uniform(0.5, 1.5);
-      const auto [force, energy] = spring(k, c, rest);
-      push({{"type", "spring_damper"}, {"i", end(i, si)}, {"j", end(j, sj)}, {"k", k}, {"c", c}, {"length", rest}},
-           {i, j, [h](P a, P b, Jet) { return norm(h(a, b)); }, force, energy});
+      push_spring(i, j, si, sj, k, c, distance(at, other) * uniform(0.5, 1.5));
     } else if (kind == 1) {
       const double kt = k * size * size, ct = c * size * size, rest = uniform(-3, 3);
       const auto [force, energy] = spring(kt, ct, rest);
@@ -329,18 +364,7 @@ class RandomScene {
            {i, j, [](P a, P b, Jet) { return b.phi - a.phi; }, force, energy});
     } else if (kind == 2) {
       const double ky = k * uniform(0.1, 1), kt = k * size * size * uniform(0.1, 1), rest = uniform(-3, 3);
-      const Json entry = {
-          {"type", "bushing"}, {"i", end(i, si)}, {"j", end(j, sj)},       {"kx", k},      {"ky", ky}, {"kt", kt},
-          {"cx", c},           {"cy", c},         {"ct", c * size * size}, {"angle", rest}};
-      const auto along = [h](double x, double y) {
-        return [=](P a, P b, Jet) { return dot(catena::testing::turned(a.phi, {x, y}), h(a, b)); };
-      };
-      const auto [fx, vx] = spring(k, c, 0);
-      const auto [fy, vy] = spring(ky, c, 0);
-      const auto [ft, vt] = spring(kt, c * size * size, rest);
-      push(entry, {i, j, along(1, 0), fx, vx});
-      push(entry, {i, j, along(0, 1), fy, vy});
-      push(entry, {i, j, [](P a, P b, Jet) { return b.phi - a.phi; }, ft, vt});
+      push_bushing(i, j, si, sj, {k, ky, kt, c, c, c * size * size, rest});
     } else if (forces_ == Forces::moving) {
       const double torque = weight * size * uniform(-1, 1), omega = pace * uniform(0.2, 3), phase = uniform(-3, 3);
       const Json wave = {{"harmonic", {{"amplitude", torque}, {"omega", omega}, {"phase", phase}}}};
