@@ -139,5 +139,49 @@ TEST(Auto, TurnsImplicitBesideABallThatBounces) {
   EXPECT_LT(run.analysis().report.counters.steps, 40000);
 }
 
+// Both matrices of a step are made once a step at most, and not where it keeps its length and converges well.
+TEST(Radau, MakesItsMatricesOnceAStep) {
+  for (const int rods : {10, size_of_test(40, 12)}) {
+    const std::string n = std::to_string(rods);
+    const std::string bushing = R"("kx": 1e7, "ky": 1e7, "cx": 300, "cy": 300})";
+    const TextRun run = run_text(
+        R"({"catena": 1, "gravity": [0, -9.81], "replicate": [{"count": )" + n +
+        R"(, "bodies": {"r{k}": {"mass": "=1/)" + n + R"(", "rod": {"from": ["=(k-1)/)" + n + R"(", 0], "to": ["=k/)" +
+        n + R"(", 0]}}}}, {"count": )" + std::to_string(rods - 1) +
+        R"(, "forces": [{"type": "bushing", "i": "r{k}.to", "j": "r{k+1}.from", )" + bushing + R"(]}],
+        "forces": [{"type": "bushing", "i": "ground", "j": "r1.from", )" +
+        bushing + R"(], "outputs": ["r1.angle"], "analyses": [{"type": "dynamics", "digits": false, "method": "radau",
+        "until": 0.1, "every": 0.1, "tolerance": 1e-6}]})");
+    ASSERT_TRUE(run.analysis().report.ok()) << run.outcome.error_text << run.analysis().report.message;
+    const auto& counters = run.analysis().report.counters;
+    const std::int64_t tried = counters.steps + counters.rejected;
+    EXPECT_LE(counters.factorizations, 2 * tried + 10) << rods;
+    EXPECT_LE(counters.rejected, counters.steps / 5) << rods;
+    EXPECT_LE(counters.steps, 15 * rods + 100) << rods;
+  }
+}
+
+// A parallelogram lies flat eight times within three seconds, and goes on as one.
+TEST(ImplicitMethods, CrossSingularPositions) {
+  const auto angle_by = [](const std::string& method, const std::string& tolerance) {
+    const TextRun run = run_text(
+        R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"a": {"rod": {"from": [0, 0], "to": [0, 1]}, "mass": 1,
+        "angular_velocity": -8}, "b": {"rod": {"from": [0, 1], "to": [2, 1]}, "mass": 1},
+        "c": {"rod": {"from": [2, 0], "to": [2, 1]}, "mass": 1}}, "constraints": [
+        {"type": "revolute", "i": "ground", "j": "a.from"}, {"type": "revolute", "i": "a.to", "j": "b.from"},
+        {"type": "revolute", "i": "b.to", "j": "c.to"}, {"type": "revolute", "i": ["ground", [2, 0]], "j": "c.from"}],
+        "outputs": ["a.angle", "c.angle"], "analyses": [{"type": "dynamics", "digits": false, "until": 3, "every": 3,
+        "method": ")" +
+        method + R"(", "tolerance": )" + tolerance + "}]}");
+    EXPECT_TRUE(run.analysis().report.ok()) << method << run.analysis().report.message;
+    EXPECT_NEAR(run.last("a.angle"), run.last("c.angle"), 1e-9) << method;
+    return run.last("a.angle");
+  };
+  // Of 26 rad: tolerances are those of the state.
+  const double exact = angle_by("rk8", "1e-11");
+  EXPECT_NEAR(angle_by("radau", "1e-6"), exact, 1e-5);
+  EXPECT_NEAR(angle_by("alpha", "1e-5"), exact, 1e-4);
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -48,7 +48,7 @@ void DynamicsWithEvents::begin(const TimeGrid& grid, const Needs& needs) {
   run_.rows = rows_before_;
   watch_->rows_given = [this] { return run_.rows; };
   run_.total = {};
-  methods_.clear();
+  methods_ = {dynamics_->method()};
   run_.total.warnings = inactive_;
   singular_points_.clear();
   end_.reset();
