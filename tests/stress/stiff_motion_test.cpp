@@ -132,6 +132,8 @@ TEST(StiffMotion, IsThatOfADenseFormulation) {
   std::map<std::string, int> seen;
   expect_no_fault(first_case(), last_case(100), [&](unsigned seed) { return fault_of_stiff_motion(seed, seen); });
   print_shares("stiff motions", seen);
+  // The oracle gives up where it would need more steps than are worth it.
+  if (stress_cases(100) >= 20) EXPECT_GE(seen["(within 10)"] + seen["(within 10 x growth)"], stress_cases(100) / 5);
 }
 
 }  // namespace
