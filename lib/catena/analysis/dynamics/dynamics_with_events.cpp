@@ -45,6 +45,7 @@ DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const
                     model_->element_name(event.element), event.name));
   }
   make_dynamics();
+  methods_ = {dynamics_->method()};
   watch_ = std::make_unique<EventWatch>(std::move(events), *model_, dynamics_->plan(), sources);
 }
 
