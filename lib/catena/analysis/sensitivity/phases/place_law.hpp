@@ -5,8 +5,8 @@
 //   half) slides         lambda_slide = mu sigma N            sigma: sign of the slip, or tanh(w' / vs)
 //
 // Forward derivatives take these with derivatives along the parameters (phase_equations.hpp), adjoints by gap, slip and
-// multipliers one by one. Psi' / g' = 1 - 2 g / range for a stop with two bounds, and a cable, else 1. Units: m or rad, N or N m.
-// Source: contact_loads.hpp.
+// multipliers one by one. Psi' / g' = 1 - 2 g / range for a stop with two bounds, and a cable, else 1. Units: m or rad,
+// N or N m. Source: contact_loads.hpp.
 #pragma once
 
 #include <span>
