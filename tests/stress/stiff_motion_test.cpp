@@ -133,7 +133,9 @@ TEST(StiffMotion, IsThatOfADenseFormulation) {
   expect_no_fault(first_case(), last_case(100), [&](unsigned seed) { return fault_of_stiff_motion(seed, seen); });
   print_shares("stiff motions", seen);
   // The oracle gives up where it would need more steps than are worth it.
-  if (stress_cases(100) >= 20) EXPECT_GE(seen["(within 10)"] + seen["(within 10 x growth)"], stress_cases(100) / 5);
+  if (stress_cases(100) >= 20) {
+    EXPECT_GE(seen["(within 10)"] + seen["(within 10 x growth)"], stress_cases(100) / 5);
+  }
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include "cases/exact_chain.hpp"
 #include "cases/reference_file.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/elements/all.hpp"
+#include "catena/model/model_add.hpp"
 #include "moving_mechanisms.hpp"
 #include "suites/suites.hpp"
 
@@ -112,6 +114,34 @@ Problem car(const Bench& bench) {
           .growth = 10};
 }
 
+/// A wheel behind a viscous coupling to a shaft that swings, from rest: omega' = -rate (omega - cos t), which steps of
+/// an explicit method follow no further than some 1 / rate each.
+Problem stiff_coupling() {
+  constexpr double rate = 1e5;
+  auto model = std::make_shared<Model>();
+  const int shaft = model->add_body("shaft", {.mass = 1, .inertia = 1});
+  const int wheel = model->add_body("wheel", {.mass = 1, .inertia = 1});
+  model->bodies[static_cast<std::size_t>(wheel)].angular_velocity_given = true;
+  model->add("bearing", Revolute<>{}, ground, shaft);
+  model->add("pin", Revolute<>{}, ground, wheel);
+  model->add_driver("drive", AbsoluteAngle<>{}, shaft, ground, TimeFunction<double>::harmonic(1, 1, 0));
+  Bushing<> coupling;
+  coupling.ct = rate;
+  model->add_force("coupling", coupling, shaft, wheel);
+  return {.name = "stiff coupling",
+          .model = model,
+          .grid = TimeGrid::instant(3),
+          .error_of = "angle, rad",
+          .reference = "closed form",
+          .error =
+              [wheel](const SystemState& s) {
+                const long double k = rate, t = s.t, a = k * k / (1 + k * k), b = k / (1 + k * k);
+                const long double exact = a * std::sin(t) + b * (1 - std::cos(t)) + a * std::expm1(-k * t) / k;
+                return static_cast<double>(std::abs(s.q[3 * static_cast<std::size_t>(wheel) + 2] - exact));
+              },
+          .growth = 10};
+}
+
 /// False where a still smaller tolerance would take longer than it is worth.
 bool measure(Bench& bench, const Problem& problem, IntegrationMethod method, double tolerance) {
   Row row{.suite = "dynamics",
@@ -157,6 +187,7 @@ void dynamics_suite(Bench& bench) {
     problems.insert(problems.begin(), [] { return falling_chain(40, 1); });
     problems.emplace_back([] { return four_bars_through_flat(2); });
     problems.emplace_back([] { return four_bars_through_flat(40); });
+    problems.emplace_back(stiff_coupling);
   }
   for (const auto& make : problems) {
     const Problem problem = make();

@@ -22,7 +22,7 @@ constexpr std::int64_t steps_between_checks = 32;
 
 // Whether nothing in the scene gives a length: neither joints, nor bodies, nor what acts on them.
 bool lacks_length(const Evaluator& evaluator) {
-  if (given_length(evaluator.model()) != 0) return false;
+  if (evaluator.plan().rows > 0 || given_length(evaluator.model()) != 0) return false;
   double arms = 0;
   evaluator.attachment_radii(&arms);
   return arms == 0;
