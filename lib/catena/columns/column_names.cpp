@@ -5,6 +5,7 @@
 
 #include "catena/columns/element_columns.hpp"
 #include "catena/columns/own_columns.hpp"
+#include "catena/columns/switches.hpp"
 
 namespace catena {
 namespace {
@@ -92,6 +93,10 @@ class Lookup {
     if (head_ == "momentum") return group(momentum_columns);
     if (const int body = model_.find_body(head_); body >= ground) return body_name(body);
     if (const int element = model_.find_element(head_); element >= 0) return element_name(element);
+    if (std::optional<NamedColumn> found = find_switch(model_, name_)) {
+      out_.push_back(std::move(*found));
+      return {};
+    }
     return unknown_head();
   }
 

@@ -19,6 +19,7 @@
 #include "catena/columns/own_columns.hpp"
 #include "catena/columns/reaction.hpp"
 #include "catena/columns/spring.hpp"
+#include "catena/columns/switches.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/attachment.hpp"
 #include "catena/model/column.hpp"
@@ -41,7 +42,7 @@ class RowValues {
       case ColumnKind::residual:
         return s_.residual();
       case ColumnKind::own:
-        return own(column.index);
+        return column.detail < 0 ? own(column.index) : switch_of(column);
       case ColumnKind::x:
         return position(column).x;
       case ColumnKind::y:
@@ -159,6 +160,16 @@ class RowValues {
     const auto k = static_cast<std::size_t>(number);
     return s_.model().own_columns[k].formula.evaluate(
         [&](std::uint32_t input) { return value(own_inputs_[k][static_cast<std::size_t>(input)]); });
+  }
+
+  /// The difference by which an own column takes one branch or the other.
+  S switch_of(const Column& column) {
+    const auto k = static_cast<std::size_t>(column.index);
+    SwitchNotes<S> notes{column.detail};
+    note_switches(
+        s_.model().own_columns[k].formula,
+        [&](std::uint32_t input) { return value(own_inputs_[k][static_cast<std::size_t>(input)]); }, notes);
+    return notes.difference;
   }
 
   /// The point's place in the centroidal frame: a named one, or the origin of the author's frame.

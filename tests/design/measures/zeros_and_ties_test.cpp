@@ -1,9 +1,12 @@
 // Measures whose derivatives are in doubt: root mean squares of columns that are zero, and extremes that are reached
-// several times. Where all that may count agrees there is a gradient; else none, and a reason.
+// several times. Where all that may count agrees there is a gradient; else none, and a reason. Kinks of integrands.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "analysis/sanitized.hpp"
 #include "design/measured.hpp"
@@ -129,6 +132,119 @@ TEST(ZerosAndTies, ExtremesInsideAndAtAnEndOfTheRun) {
     }
     return far || warns(run, "its extreme is reached") ? "" : "no reason";
   });
+}
+
+/// The integral of |cos| from 0 to u.
+double way(double u) {
+  const double n = std::floor(u / std::numbers::pi + 0.5);
+  return 2 * n + std::sin(u - n * std::numbers::pi);
+}
+
+// A wheel that is driven by a sin(w t); its speed is a w cos(w t). h is the speed at w t = theta.
+TEST(MeasureKinks, IntegralsOfDrivenMotions) {
+  for (unsigned seed = 1; seed <= size_of_test(40u, 8u); ++seed) {
+    RandomNumbers random(seed);
+    const double a = random(0.5, 2), w = random(2, 6), end = random(0.5, 2.5), theta = random(0.02, 1.55);
+    const double pi = std::numbers::pi, u = w * end, turns = std::floor(u / pi), h = a * w * std::cos(theta);
+    const double reached = std::clamp(u - turns * pi, theta, pi - theta);
+    const double slow_angle = turns * (pi - 2 * theta) + reached - theta;
+    const double slow_way = 2 * turns * (1 - std::sin(theta)) + way(reached) - way(theta);
+    for (const std::string mode : {"forward", "adjoint"}) {
+      SCOPED_TRACE(fmt::format("{} {}", seed, mode));
+      const TextRun run = run_sensitivity_of(
+          R"json("parameters": {"a": )json" + text_of(a) + R"json(, "w": )json" + text_of(w) + R"json(, "h": )json" +
+              text_of(h) + R"json(},
+        "bodies": {"wheel": {"mass": 1, "inertia": 1}},
+        "constraints": [{"type": "revolute", "i": "ground", "j": "wheel"}],
+        "columns": {"speed": "=abs(wheel.omega)"},
+        "drivers": [{"type": "absolute_angle", "i": "wheel", "value": {"harmonic": {"amplitude": "a", "omega": "w"}}}])json",
+          R"json(["a", "w", "h"])json", mode, R"json("type": "kinematics", "every": 0.1, "until": )json" + text_of(end),
+          R"json("way": {"integral": "=abs(wheel.omega)"}, "fast": {"integral": "=max(h, speed)"})json");
+      ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+      EXPECT_NEAR(value(run, "way"), a * way(u), 1e-9);
+      EXPECT_NEAR(gradient(run, "way", 0), way(u), 1e-8);
+      EXPECT_NEAR(gradient(run, "way", 1), a * end * std::abs(std::cos(u)), 1e-8);
+      EXPECT_NEAR(value(run, "fast"), a * (way(u) - slow_way) + h * slow_angle / w, 1e-8);
+      EXPECT_NEAR(gradient(run, "fast", 0), way(u) - slow_way, 1e-8);
+      EXPECT_NEAR(gradient(run, "fast", 2), slow_angle / w, 1e-8);
+    }
+  }
+}
+
+// A weight on a spring, x = a cos(w t), w = sqrt(k).
+TEST(MeasureKinks, IntegralsOfFreeMotions) {
+  for (unsigned seed = 1; seed <= size_of_test(24u, 6u); ++seed) {
+    RandomNumbers random(seed);
+    const double a = random(0.5, 2), w = random(2, 6), end = random(0.5, 2.5);
+    const double u = w * end, f = way(u), half = (f + std::sin(u)) / 2;
+    const double by_k = a * (end * std::abs(std::cos(u)) - f / w) / (2 * w * w);
+    for (const std::string mode : {"forward", "adjoint"}) {
+      SCOPED_TRACE(fmt::format("{} {}", seed, mode));
+      const TextRun run = run_sensitivity_of(
+          R"json("parameters": {"a": )json" + text_of(a) + R"json(, "k": )json" + text_of(w * w) + R"json(},
+        "bodies": {"weight": {"mass": 1, "particle": true, "position": ["a", 0]}},
+        "constraints": [{"type": "absolute_y", "i": "weight", "value": 0}],
+        "forces": [{"type": "spring_damper", "i": "ground", "j": "weight", "k": "k", "length": 0}])json",
+          R"json(["a", "k"])json", mode,
+          R"json("type": "dynamics", "tolerance": 1e-11, "every": 0.3, "until": )json" + text_of(end),
+          R"json("all": {"integral": "=abs(weight.x)"}, "right": {"mean": "=max(0, weight.x)"})json");
+      ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+      EXPECT_NEAR(value(run, "all"), a * f / w, 1e-8);
+      EXPECT_NEAR(gradient(run, "all", 0), f / w, 1e-7);
+      EXPECT_NEAR(gradient(run, "all", 1), by_k, 1e-7);
+      EXPECT_NEAR(gradient(run, "right", 0), half / (w * end), 1e-7);
+      EXPECT_NEAR(gradient(run, "right", 1),
+                  (by_k + a * (end * std::cos(u) - std::sin(u) / w) / (2 * w * w)) / (2 * end), 1e-7);
+    }
+  }
+}
+
+// x / |x| of x = cos(w t) is a step: its integral to T behind the first zero is pi / w - T.
+TEST(MeasureKinks, StepsHaveNoDerivativeAndAReason) {
+  for (const std::string mode : {"forward", "adjoint"}) {
+    const TextRun run = run_sensitivity_of(
+        R"json("parameters": {"w": 2.0}, "bodies": {"p": {"particle": true, "mass": 1}},
+        "constraints": [{"type": "absolute_y", "i": "p", "value": 0}],
+        "drivers": [{"type": "absolute_x", "i": "p",
+                     "value": {"harmonic": {"amplitude": 1, "omega": "w", "phase": "=pi/2"}}}])json",
+        R"json(["w"])json", mode, R"json("type": "kinematics", "until": 1.3, "every": 0.1)json",
+        R"json("side": {"integral": "=p.x/abs(p.x)"})json");
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    EXPECT_NEAR(value(run, "side"), std::numbers::pi / 2 - 1.3, 1e-9);
+    EXPECT_TRUE(std::isnan(gradient(run, "side", 0)));
+    EXPECT_TRUE(warns(run, "where it switches from one branch to another"));
+  }
+}
+
+// p = a c sin t, q = b c sin t with a = b: max(p, q) has a kink by a and by b, none by c.
+TEST(MeasureKinks, BranchesThatStayEqual) {
+  for (unsigned seed = 1; seed <= size_of_test(8u, 3u); ++seed) {
+    RandomNumbers random(seed);
+    const double a = random(0.5, 2), c = random(0.5, 2), end = random(2, 6);
+    for (const std::string mode : {"forward", "adjoint"}) {
+      SCOPED_TRACE(fmt::format("{} {}", seed, mode));
+      const TextRun run = run_sensitivity_of(
+          R"json("parameters": {"a": )json" + text_of(a) + R"json(, "b": )json" + text_of(a) + R"json(, "c": )json" +
+              text_of(c) + R"json(},
+        "bodies": {"p": {"particle": true, "mass": 1}, "q": {"particle": true, "mass": 1}},
+        "constraints": [{"type": "absolute_y", "i": "p", "value": 0}, {"type": "absolute_y", "i": "q", "value": 0}],
+        "drivers": [
+          {"type": "absolute_x", "i": "p", "value": {"harmonic": {"amplitude": "=a*c", "omega": 1}}},
+          {"type": "absolute_x", "i": "q", "value": {"harmonic": {"amplitude": "=b*c", "omega": 1}}}])json",
+          R"json(["a", "b", "c"])json", mode, R"json("type": "kinematics", "every": 0.5, "until": )json" + text_of(end),
+          R"json("top": {"max": "=max(p.x, q.x)"}, "sum": {"integral": "=max(p.x, q.x)"},
+             "mean": {"mean": "=abs(p.x - q.x)"})json");
+      ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+      EXPECT_NEAR(gradient(run, "top", 2), a, 1e-8);
+      EXPECT_NEAR(gradient(run, "sum", 2), a * (1 - std::cos(end)), 1e-8);
+      EXPECT_NEAR(gradient(run, "mean", 2), 0, 1e-12);
+      for (const char* name : {"top", "sum", "mean"}) {
+        EXPECT_TRUE(std::isnan(gradient(run, name, 0))) << name;
+        EXPECT_TRUE(std::isnan(gradient(run, name, 1))) << name;
+      }
+      EXPECT_TRUE(warns(run, "both branches of an abs, min or max"));
+    }
+  }
 }
 
 }  // namespace

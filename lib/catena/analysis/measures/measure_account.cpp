@@ -63,6 +63,7 @@ void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples:
     if (std::isfinite(sample.value[column_])) size_ = std::max(size_, std::abs(sample.value[column_]));
   }
   if (!is_integral()) return;
+  if (samples.switches()) note_switches(part, piece);
   const double length = part.back().t - part.front().t;
   sum_gradient_.resize(parameters_, 0.0);
   squares_gradient_.resize(parameters_, 0.0);
@@ -283,6 +284,7 @@ MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool looked)
     case MeasureKind::field:
       break;
   }
+  if (parameters_ > 0 && result.value) tell_switches(result);
   if (!looked && wants_samples() && result.trouble.empty())
     result.trouble = "the motion could not be looked at everywhere between its rows";
   if (result.value && !std::isfinite(*result.value)) {

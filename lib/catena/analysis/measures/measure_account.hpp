@@ -91,6 +91,14 @@ class MeasureSet::Account {
     return sample.derivative.empty() ? std::numeric_limits<double>::quiet_NaN()
                                      : sample.derivative[column * parameters_ + p];
   }
+  /// Notes where the column switches: whether it does so with a jump, and whether its branches stay equal.
+  void note_switches(const MotionSamples::Part& part, const MotionPiece& piece);
+  bool is_undecided(const MotionSample& sample) const {
+    const bool has_second = request_.kind == MeasureKind::path;
+    return (sample.undecided & (bit_of_column(column_) | (has_second ? bit_of_column(second_) : 0))) != 0;
+  }
+  bool is_undecided() const;
+  void tell_switches(MeasureResult& result) const;
   void give(MeasureResult& result, const MotionSample& sample) const;
   void path_pulses(double value, std::vector<ColumnPulse>& out) const;
   /// What one column of a sample is made of.
@@ -116,6 +124,9 @@ class MeasureSet::Account {
   struct Node {
     double t, weight, value;
   };
+  std::optional<std::pair<double, double>> last_part_;  // where it ended, and the column there
+  bool undecided_ = false;                              // somewhere in the integral
+  std::optional<double> jumps_at_;                      // an instant at which the column switches with a jump
   bool keeps_nodes_ = false;
   std::vector<Node> nodes_;  // of the integral, if they are kept
   /// An instant that may move with the parameters: what an integral of v, and of v^2, gains with it.

@@ -1,4 +1,6 @@
-// What measures are made of: pulses of columns at instants.
+// What measures are made of: pulses of columns at instants, and of which branch of columns that switch.
+#include <fmt/format.h>
+
 #include "catena/analysis/measures/measure_account.hpp"
 
 namespace catena {
@@ -39,6 +41,8 @@ void MeasureSet::Account::take_given(MeasureResult& result, const std::vector<do
 std::string_view MeasureSet::Account::pulses(const MeasureResult& result, std::vector<ColumnPulse>& out) const {
   if (!result.value) return {};
   const double value = *result.value;
+  if (is_undecided()) return "looks at a column that switches, where both branches are equal";
+  if (jumps_at_) return "looks at a column that jumps where it switches";
   switch (request_.kind) {
     case MeasureKind::maximum:
     case MeasureKind::minimum:
@@ -85,6 +89,50 @@ std::string_view MeasureSet::Account::pulses(const MeasureResult& result, std::v
       return {};
   }
   return {};
+}
+
+// Parts that are halved share a sample, those that a switch parts do not.
+void MeasureSet::Account::note_switches(const MotionSamples::Part& part, const MotionPiece& piece) {
+  for (const MotionSample& sample : part) undecided_ = undecided_ || is_undecided(sample);
+  const double value = part.front().value[column_];
+  if (last_part_ && part.front().t != piece.from() && part.front().t != last_part_->first && !jumps_at_ &&
+      std::abs(value - last_part_->second) > MotionSamples::no_jump * size_)
+    jumps_at_ = part.front().t;
+  last_part_ = {part.back().t, part.back().value[column_]};
+}
+
+bool MeasureSet::Account::is_undecided() const {
+  const auto here = [&](const std::optional<MotionSample>& sample) { return sample && is_undecided(*sample); };
+  switch (request_.kind) {
+    case MeasureKind::first:
+      return here(first_);
+    case MeasureKind::final:
+      return here(last_);
+    case MeasureKind::integral:
+    case MeasureKind::mean:
+    case MeasureKind::rms:
+      return undecided_;
+    default:
+      return std::any_of(instants_.begin(), instants_.end(), [&](const Instant& one) { return here(one.sample); }) ||
+             std::any_of(extremes_.begin(), extremes_.end(),
+                         [&](const Extreme& one) { return !one.empty() && is_undecided(one.best()); });
+  }
+}
+
+// Why a gradient is missing at a switch; where a jump moves with a parameter is not known.
+void MeasureSet::Account::tell_switches(MeasureResult& result) const {
+  if (jumps_at_ && is_integral()) {
+    std::fill(result.gradient.begin(), result.gradient.end(), std::numeric_limits<double>::quiet_NaN());
+    result.trouble = fmt::format(
+        "its column jumps at t = {:.9g} s, where it switches from one branch to another: how that instant moves with "
+        "the parameters is not known",
+        *jumps_at_);
+  }
+  if (!is_undecided() || !result.trouble.empty()) return;
+  if (std::any_of(result.gradient.begin(), result.gradient.end(), [](double d) { return std::isnan(d); }))
+    result.trouble =
+        "both branches of an abs, min or max in its column are equal, with different derivatives: which of them counts "
+        "changes with the parameters";
 }
 
 }  // namespace catena

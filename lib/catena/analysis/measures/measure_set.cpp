@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "catena/analysis/measures/measure_account.hpp"
+#include "catena/columns/switches.hpp"
 
 namespace catena {
 namespace {
@@ -38,19 +39,31 @@ MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model,
     : run_(run), requests_(std::move(requests)), breakpoints_(model.functions) {
   std::erase_if(requests_, [](const MeasureRequest& request) { return request.kind == MeasureKind::field; });
   if (requests_.empty()) return;
-  const ColumnPlaces places = places_of(requests_);
-  ColumnSources untimed = sources;
-  untimed.timed = false;
-  columns_ = std::make_unique<ColumnSet>(ColumnSet::resolve(model, plan, places.names, untimed));
-  if (!columns_->notes().empty()) throw std::invalid_argument("measures: " + columns_->notes().front());
-  if (columns_->size() != places.names.size())
-    throw std::invalid_argument("measures: a name stands for more than one column");
+  resolve(model, plan, sources);
   for (const MeasureRequest& request : requests_) {
     if (needs_time(request.kind) && !sources.timed)
       throw std::invalid_argument(
           fmt::format("measure \"{}\" is taken over time, which {} has not", request.name, sources.analysis));
   }
-  open_accounts(places.of_request);
+  open_accounts(places_of(requests_).of_request);
+}
+
+void MeasureSet::resolve(const Model& model, const Plan& plan, const ColumnSources& sources) {
+  std::vector<std::string> names = places_of(requests_).names;
+  ColumnSources untimed = sources;
+  untimed.timed = false;
+  columns_ = std::make_unique<ColumnSet>(ColumnSet::resolve(model, plan, names, untimed));
+  if (!columns_->notes().empty()) throw std::invalid_argument("measures: " + columns_->notes().front());
+  if (columns_->size() != names.size()) throw std::invalid_argument("measures: a name stands for more than one column");
+  for (std::size_t c = 0; c < columns_->size(); ++c) {
+    for (const std::string& name : switches_of(model, names[c])) {
+      const auto known = std::find(names.begin(), names.end(), name);
+      switches_.push_back({c, static_cast<std::size_t>(known - names.begin())});
+      if (known == names.end()) names.push_back(name);
+    }
+  }
+  if (!switches_.empty())
+    switched_columns_ = std::make_unique<ColumnSet>(ColumnSet::resolve(model, plan, names, untimed));
 }
 
 void MeasureSet::open_accounts(const std::vector<std::array<std::size_t, 2>>& places) {
@@ -84,6 +97,11 @@ void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives,
   if (empty()) return;
   parameters_ = parameters;
   may_end_ = may_end;
+  if (switched_columns_) {
+    columns_ = std::move(switched_columns_);
+    samples_ = std::make_unique<MotionSamples>(*columns_, run_);
+    samples_->switch_columns(switches_);
+  }
   bool integrals = false;
   for (const auto& account : accounts_) {
     account->set_parameters(parameters, instants_move);

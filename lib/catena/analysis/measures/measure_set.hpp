@@ -109,6 +109,8 @@ class MeasureSet {
  private:
   class Account;
   void open_accounts(const std::vector<std::array<std::size_t, 2>>& places);
+  /// Resolves the columns of measures, and the switches of those that have some.
+  void resolve(const Model& model, const Plan& plan, const ColumnSources& sources);
   void note_row(const MotionSample& sample, bool only_rows);
   void cover_piece(const MotionPiece& piece);
   void look_at_end(const MotionPiece& piece);
@@ -126,6 +128,9 @@ class MeasureSet {
   std::vector<MeasureRequest> requests_;
   Breakpoints breakpoints_;
   std::unique_ptr<ColumnSet> columns_;
+  /// With derivatives: the same and, behind them, where they switch (columns/switches.hpp); null: nothing does.
+  std::unique_ptr<ColumnSet> switched_columns_;
+  std::vector<ColumnSwitch> switches_;
   std::unique_ptr<MotionSamples> samples_;
   std::vector<std::unique_ptr<Account>> accounts_;
   int parameters_ = 0;

@@ -4,24 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/measures/sample_places.hpp"
+
 namespace catena {
 namespace {
 
-// Of [-1, 1]: the nodes of Kronrod's extension of Gauss' rule with three nodes, and half its weights.
-constexpr std::array<double, 7> places = {-0.960491268708020283423507092629080, -0.774596669241483377035853079956480,
-                                          -0.434243749346802558002071502844628, 0.0,
-                                          0.434243749346802558002071502844628,  0.774596669241483377035853079956480,
-                                          0.960491268708020283423507092629080};
-constexpr std::array<double, 7> half_weights = {
-    0.104656226026467265193823857192073 / 2, 0.268488089868333440728569280666710 / 2,
-    0.401397414775962222905051818618432 / 2, 0.450916538658474142345110087045571 / 2,
-    0.401397414775962222905051818618432 / 2, 0.268488089868333440728569280666710 / 2,
-    0.104656226026467265193823857192073 / 2};
-// Samples of a part that the quartic goes through (both ends, three nodes), and those that it must foretell.
-constexpr std::array<std::size_t, 5> known = {0, 2, 4, 6, 8};
-constexpr std::array<std::size_t, 4> foretold = {1, 3, 5, 7};
 // See the header.
-constexpr double allowed_part = 1e-5;
 constexpr double shortest_part = 0x1p-12;
 // From this part of the distance of rows on, enough for sixteen swings between two of them, a misfit that halving
 // leaves as large in both halves is taken for noise: that of a smooth column falls to 1/32, that of a kink stays in one
@@ -42,41 +30,19 @@ constexpr double cancelled = 1e-8;
 constexpr double first_difference = 1.0 / 32, settled = 1e-11;
 constexpr int most_halvings = 14;
 
-double place_of(std::size_t sample) { return sample == 0 ? -1 : sample == 8 ? 1 : places[sample - 1]; }
-
-/// The barycentric weights of the samples of a part, up to a factor.
-std::array<double, 9> barycentric_weights() {
-  std::array<double, 9> weights{};
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    weights[k] = 1;
-    for (std::size_t j = 0; j < weights.size(); ++j) {
-      if (j != k) weights[k] /= place_of(k) - place_of(j);
-    }
-  }
-  return weights;
-}
-
-/// The quartic's weights of the known samples at the foretold ones (Lagrange).
-std::array<std::array<double, 5>, 4> foretelling_weights() {
-  std::array<std::array<double, 5>, 4> weights{};
-  for (std::size_t f = 0; f < foretold.size(); ++f) {
-    const double x = place_of(foretold[f]);
-    for (std::size_t k = 0; k < known.size(); ++k) {
-      double w = 1;
-      for (std::size_t j = 0; j < known.size(); ++j) {
-        if (j != k) w *= (x - place_of(known[j])) / (place_of(known[k]) - place_of(known[j]));
-      }
-      weights[f][k] = w;
-    }
-  }
-  return weights;
-}
+const auto quartic = sample_places::foretelling_weights();
 
 }  // namespace
 
-const std::array<double, 7>& MotionSamples::weights() { return half_weights; }
+const std::array<double, 7>& MotionSamples::weights() { return sample_places::half_weights; }
 
 MotionSample MotionSamples::take(const Snapshot& snapshot, bool with_derivative) const {
+  MotionSample sample = take_one(snapshot, with_derivative);
+  judge_ties(sample);
+  return sample;
+}
+
+MotionSample MotionSamples::take_one(const Snapshot& snapshot, bool with_derivative) const {
   MotionSample sample{snapshot.t, std::vector<double>(columns_.size()), {}, {}, 0, {}};
   columns_.evaluate(snapshot, sample.value);
   if (with_derivative && parameters_ > 0) {
@@ -100,7 +66,7 @@ std::optional<MotionSample> MotionSamples::see(const MotionPiece& piece, double 
   if (values_ && !with_derivative) return take_values(t);
   const std::optional<Snapshot> snapshot = piece.stretch.at(t);
   if (!snapshot) return {};
-  return take(*snapshot, with_derivative);
+  return take_one(*snapshot, with_derivative);
 }
 
 std::optional<MotionSample> MotionSamples::limit(const MotionPiece& piece, double t, bool with_derivative) const {
@@ -119,10 +85,11 @@ std::optional<MotionSample> MotionSamples::limit(const MotionPiece& piece, doubl
 }
 
 std::optional<MotionSample> MotionSamples::look(const MotionPiece& piece, double t, bool with_derivative) const {
-  if (!piece.is_break(t)) return see(piece, t, with_derivative);
   with_derivative = with_derivative && parameters_ > 0;
-  std::optional<MotionSample> sample = limit(piece, t, with_derivative);
-  if (!sample || !with_derivative || t == run_.last) return sample;
+  const bool breaks = piece.is_break(t);
+  std::optional<MotionSample> sample = breaks ? limit(piece, t, with_derivative) : see(piece, t, with_derivative);
+  if (sample) judge_ties(*sample);
+  if (!breaks || !sample || !with_derivative || t == run_.last) return sample;
   const std::vector<double> moves = moving(t);
   if (moves.empty() && !later_) return sample;
   const std::optional<std::vector<double>> rate = rates(piece, t);
@@ -181,16 +148,20 @@ std::optional<std::vector<double>> MotionSamples::rates(const MotionPiece& piece
   return best;
 }
 
-MotionSamples::Misfit MotionSamples::misfit(const Part& part) const {
-  static const auto weights = foretelling_weights();
+double MotionSamples::misfit_of(const Part& part, std::size_t c) const {
   double largest = 0;
-  for (std::size_t c = 0; c < size_.size(); ++c) {
-    for (std::size_t f = 0; f < foretold.size() && size_[c] > 0; ++f) {
-      double value = 0;
-      for (std::size_t k = 0; k < known.size(); ++k) value += weights[f][k] * part[known[k]].value[c];
-      largest = std::max(largest, miss(value, part[foretold[f]].value[c], c));
-    }
+  for (std::size_t f = 0; f < sample_places::foretold.size() && size_[c] > 0; ++f) {
+    double value = 0;
+    for (std::size_t k = 0; k < sample_places::known.size(); ++k)
+      value += quartic[f][k] * part[sample_places::known[k]].value[c];
+    largest = std::max(largest, miss(value, part[sample_places::foretold[f]].value[c], c));
   }
+  return largest;
+}
+
+MotionSamples::Misfit MotionSamples::misfit(const Part& part) const {
+  double largest = 0;
+  for (std::size_t c = 0; c < size_.size(); ++c) largest = std::max(largest, misfit_of(part, c));
   largest /= allowed_part;
   const double rows = misfit_of_rows(part) / allowed_row_part;
   return {std::max(largest, rows), std::max(quartic_grows_by * largest, eighth_grows_by * rows)};
@@ -203,7 +174,7 @@ double MotionSamples::miss(double expected, double there, std::size_t column) co
 }
 
 double MotionSamples::misfit_of_rows(const Part& part) const {
-  static const std::array<double, nodes + 2> barycentric = barycentric_weights();
+  static const std::array<double, nodes + 2> barycentric = sample_places::barycentric_weights();
   const double from = part.front().t, length = part.back().t - from;
   double largest = 0;
   for (const MotionSample& row : rows_) {
@@ -211,7 +182,8 @@ double MotionSamples::misfit_of_rows(const Part& part) const {
     const double x = 2 * (row.t - from) / length - 1;
     std::array<double, nodes + 2> weight{};
     double sum = 0;
-    for (std::size_t k = 0; k < weight.size(); ++k) sum += weight[k] = barycentric[k] / (x - place_of(k));
+    for (std::size_t k = 0; k < weight.size(); ++k)
+      sum += weight[k] = barycentric[k] / (x - sample_places::place_of(k));
     if (!std::isfinite(sum)) continue;  // a row at a sample is that sample
     for (std::size_t c = 0; c < size_.size(); ++c) {
       double value = 0;
@@ -225,10 +197,11 @@ double MotionSamples::misfit_of_rows(const Part& part) const {
 bool MotionSamples::fill(const MotionPiece& piece, const MotionSample& a, const MotionSample& b, Part& part) {
   part.front() = a;
   part.back() = b;
-  std::array<double, places.size()> t{};
-  for (std::size_t k = 0; k < places.size(); ++k) t[k] = a.t + (b.t - a.t) * (1 + places[k]) / 2;
+  std::array<double, sample_places::places.size()> t{};
+  for (std::size_t k = 0; k < sample_places::places.size(); ++k)
+    t[k] = a.t + (b.t - a.t) * (1 + sample_places::places[k]) / 2;
   piece.stretch.announce(t);
-  for (std::size_t k = 0; k < places.size(); ++k) {
+  for (std::size_t k = 0; k < sample_places::places.size(); ++k) {
     std::optional<MotionSample> sample = see(piece, t[k], always_);
     if (!sample) return false;
     part[k + 1] = std::move(*sample);
@@ -249,25 +222,29 @@ void MotionSamples::note_row(MotionSample row) {
   rows_.push_back(std::move(row));
 }
 
-bool MotionSamples::cover_part(const MotionPiece& piece, const Part& part, double row_distance,
+bool MotionSamples::cover_part(const MotionPiece& piece, const Part& part, double row_distance, double shortened,
                                const std::function<void(const Part&, const MotionPiece&)>& use) {
+  if (!switches_.empty()) {
+    if (const auto cut = find_cut(piece, part)) return cover_cut(piece, part, *cut, row_distance, shortened, use);
+  }
   const Misfit off = misfit(part);
   const double length = part.back().t - part.front().t;
   if (off.here <= 1 || length <= shortest_part * row_distance) {
     worst_if_twice_ = std::max(worst_if_twice_, off.if_twice);
-    least_ = std::min(least_, length);
-    use(part, piece);
+    least_ = std::min(least_, shortened * length);
+    use_part(piece, part, use);
     return true;
   }
   Part first, second;
   if (!fill(piece, part.front(), part[4], first) || !fill(piece, part[4], part.back(), second)) return false;
   if (length <= noisy_part * row_distance && misfit(first).here > no_progress * off.here &&
       misfit(second).here > no_progress * off.here) {
-    use(first, piece);
-    use(second, piece);
+    use_part(piece, first, use);
+    use_part(piece, second, use);
     return true;
   }
-  return cover_part(piece, first, row_distance, use) && cover_part(piece, second, row_distance, use);
+  return cover_part(piece, first, row_distance, shortened, use) &&
+         cover_part(piece, second, row_distance, shortened, use);
 }
 
 bool MotionSamples::cover(const MotionPiece& piece, const std::function<void(const Part&, const MotionPiece&)>& use) {
@@ -279,7 +256,7 @@ bool MotionSamples::cover(const MotionPiece& piece, const std::function<void(con
   Part whole;
   const auto inside_piece = [&](const MotionSample& row) { return row.t > piece.from() && row.t < piece.to(); };
   const double row_distance = least_ / static_cast<double>(1 + std::count_if(rows_.begin(), rows_.end(), inside_piece));
-  const bool looked = b && fill(piece, *a, *b, whole) && cover_part(piece, whole, row_distance, use);
+  const bool looked = b && fill(piece, *a, *b, whole) && cover_part(piece, whole, row_distance, 1, use);
   covered_to_ = piece.to();
   std::erase_if(rows_, [&](const MotionSample& row) { return row.t <= covered_to_; });
   pace_ = worst_if_twice_ <= 1 ? 2 * least_ : least_;

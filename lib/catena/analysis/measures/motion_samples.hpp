@@ -4,8 +4,11 @@
 // through five of these samples must foretell the other four to 1e-5 of the column's size; else the stretch is halved.
 // The quartic's error falls with the fifth power of the length, that of the rule of seven nodes with the eleventh or
 // twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends at 1/4096 of the distance of
-// rows, at kinks, and earlier where it meets nothing but rounding. Source: R. Piessens et al., QUADPACK (1983), for the
-// rule.
+// rows, and earlier where it meets nothing but rounding. Source: R. Piessens et al., QUADPACK (1983), for the rule.
+//
+// With derivatives, columns come with what they switch by, as abs(v) does where v passes zero: parts end there
+// (switching.hpp), since derivatives jump. Where a switch stays at zero, and its derivative does not, those of the
+// column's two branches differ: it has none.
 //
 // Where a motion can be looked at anywhere, rows need not bound the stretches: pace() says how long the next one may be
 // by what the last one showed. Columns at the rows in between are known, and the polynomial through all nine samples
@@ -20,7 +23,9 @@
 // order 4, halved until they settle.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -41,8 +46,19 @@ struct MotionSample {
   /// and how fast they change, where derivatives are wanted and not at hand. 0, empty: it is none.
   double step = 0;
   std::vector<double> rate;
+  /// Where a column is at a switch, both branches being equal with different derivatives, the column's bit.
+  std::uint64_t undecided = 0;
 };
 inline constexpr std::array<double, 3> limit_weights{3, -3, 1};
+/// Columns beyond the last bit share it.
+constexpr std::uint64_t bit_of_column(std::size_t column) {
+  return std::uint64_t{1} << std::min<std::size_t>(column, 63);
+}
+
+/// A column, and one by whose sign it switches.
+struct ColumnSwitch {
+  std::size_t column, by;
+};
 
 /// How columns are differentiated.
 struct DifferentiateColumns {
@@ -67,6 +83,8 @@ class MotionSamples {
  public:
   /// A jump below this part of a column's size so far is rounding: limits from both sides of the instant are the same.
   static constexpr double no_jump = 1e-9;
+  /// See above: what the quartic may miss, in parts of a column's size.
+  static constexpr double allowed_part = 1e-5;
   /// Of Kronrod's extension of the rule of Gauss with three nodes.
   static constexpr int nodes = 7;
   /// One part of a stretch: the ends and the nodes between them in order, and the weights for its length.
@@ -82,6 +100,10 @@ class MotionSamples {
     derivatives_ = std::move(derivatives);
     always_ = always;
   }
+
+  /// Which columns switch: parts end there.
+  void switch_columns(std::vector<ColumnSwitch> switches) { switches_ = std::move(switches); }
+  bool switches() const { return !switches_.empty(); }
 
   /// Derivatives are found later, of what limits are made of.
   void differentiate_later() { later_ = true; }
@@ -116,8 +138,19 @@ class MotionSamples {
  private:
   /// Takes the samples between a and b; false where the motion could not be looked at.
   bool fill(const MotionPiece& piece, const MotionSample& a, const MotionSample& b, Part& part);
-  bool cover_part(const MotionPiece& piece, const Part& part, double row_distance,
+  /// `shortened`: by what factor switches have.
+  bool cover_part(const MotionPiece& piece, const Part& part, double row_distance, double shortened,
                   const std::function<void(const Part&, const MotionPiece&)>& use);
+  bool cover_cut(const MotionPiece& piece, const Part& part, const std::array<MotionSample, 2>& cut,
+                 double row_distance, double shortened,
+                 const std::function<void(const Part&, const MotionPiece&)>& use);
+  void use_part(const MotionPiece& piece, const Part& part,
+                const std::function<void(const Part&, const MotionPiece&)>& use) const;
+  /// The samples just before and behind the place where a column switches within a part; nothing: none does.
+  std::optional<std::array<MotionSample, 2>> find_cut(const MotionPiece& piece, const Part& part) const;
+  bool is_tie(const MotionSample& sample, const ColumnSwitch& one) const;
+  /// Takes out derivatives of columns whose branches are equal and have different ones.
+  void judge_ties(MotionSample& sample) const;
   /// By how much the polynomials miss what they must foretell, in parts of what is allowed; and what to expect in a
   /// part of twice the length.
   struct Misfit {
@@ -127,8 +160,13 @@ class MotionSamples {
   /// By how much the polynomial through all samples misses the rows inside, in parts of the columns' sizes.
   double misfit_of_rows(const Part& part) const;
   double miss(double foretold, double there, std::size_t column) const;
+  /// By how much the quartic misses what it must foretell of a column, in parts of its size.
+  double misfit_of(const Part& part, std::size_t column) const;
+  bool is_smooth(const Part& part, std::size_t column) const { return misfit_of(part, column) <= allowed_part; }
   void measure_sizes(const MotionSample& sample);
   std::optional<MotionSample> see(const MotionPiece& piece, double t, bool with_derivative) const;
+  /// The same as take(), ties not judged.
+  MotionSample take_one(const Snapshot& snapshot, bool with_derivative) const;
 
   const ColumnSet& columns_;
   TimeRange run_;
@@ -140,6 +178,7 @@ class MotionSamples {
   std::size_t parameters_ = 0;
   DifferentiateColumns derivatives_;
   Values values_;
+  std::vector<ColumnSwitch> switches_;
   bool always_ = false, later_ = false;
 };
 
