@@ -35,9 +35,7 @@ bool CrossingIntegrator::dips() const {
 bool CrossingIntegrator::step_by_runge_kutta(double limit, double first, ErrorScale& scale, std::span<double> slope) {
   if (!stepped_by_runge_kutta_ || runge_kutta_.time() != t_) {
     motion_.equations().evaluator().go_to_curve_places(curve_places_);
-    ErrorScale strict = scale;
-    strict.loosen(1, 1);
-    if (!runge_kutta_.take_over(t_, y_, first, strict, usual_ratio_)) return false;
+    if (!runge_kutta_.take_over(t_, y_, first, scale, usual_ratio_)) return false;
   }
   const bool advanced = runge_kutta_.advance(limit);
   culprit_ = runge_kutta_.culprit();

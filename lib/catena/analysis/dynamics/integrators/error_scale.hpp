@@ -98,7 +98,7 @@ class ErrorScale {
   /// size h, for at a start where they grow from zero those of the beginning say nothing.
   double size_of_work(double error, double begin, double end, double h, std::span<const double> loads) const {
     const double energy = root_energy_ * root_energy_ + std::max(std::abs(end), std::abs(end - begin));
-    double allowed = work_part * loosened(step_tolerance) * energy;
+    double allowed = loosened(work_part * step_tolerance) * energy;
     if (error > allowed) allowed = std::max(allowed, work_of_nothing(h, loads));
     return allowed > 0 ? error / allowed : 0;
   }

@@ -96,7 +96,7 @@ void RungeKutta::remember(const IntegratorMemory& memory) {
 bool RungeKutta::take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio) {
   t_ = t_before_ = t;
   std::copy(y.begin(), y.end(), y_.begin());
-  scale_ = scale;
+  scale_.take_over(scale);
   h_ = h;
   ratios_.set_usual(usual_ratio);
   if (!derivative(t_, Side::after, y_, slope_)) return false;
