@@ -8,7 +8,8 @@
 namespace catena::testing {
 namespace {
 
-/// A rod on a pin and a torsion spring under a load from above and from the side, driven where the analysis asks for it.
+/// A rod on a pin and a torsion spring under a load from above and from the side, driven where the analysis asks for
+/// it.
 std::string scene_of(const std::string& analysis, bool driven) {
   return std::string(R"({"catena": 1, "gravity": [0, -9.81], "parameters": {"P": 0.5, "k": 9},
   "bodies": {"rod": {"rod": {"from": [0, 0], "to": [0, 0.8]}, "mass": 0.1}},
