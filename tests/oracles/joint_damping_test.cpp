@@ -1,10 +1,14 @@
-// Viscous damping of joints, key `c`, against exponentials.
+// Viscous damping of joints, key `c`, against exponentials; what dampers take and drivers do where drivers move all, so
+// that nothing in the motion tells how short a step has to be.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "analysis/sanitized.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
+#include "oracles/random_seeds.hpp"
+#include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
@@ -95,6 +99,61 @@ TEST(JointDamping, IsNotNegative) {
   const TextRun run = run_text(text);
   EXPECT_EQ(run.outcome.exit_code, 3);
   EXPECT_NE(run.outcome.error_text.find("\"c\" of revolute \"pin\""), std::string::npos) << run.outcome.error_text;
+}
+
+// A block that is driven by a sin(w t) past the end of a damper, at a distance from which its direction turns within a
+// thousandth of a swing: c (v x / r)^2, summed up by the middle rule.
+TEST(DrivenWork, OfADamperThatIsPassed) {
+  expect_no_fault(1, size_of_test(36u, 6u), [](unsigned seed) -> std::string {
+    RandomNumbers random(seed);
+    const double a = random(0.1, 0.5), w = random(2, 6), beside = std::pow(10, random(-3, -0.5)), c = random(1, 10);
+    const double k = random(0, 30), until = random(2, 4);
+    const char* const methods[] = {"rk8", "rk5", "adams", "radau", "auto"};
+    const double tolerance = std::pow(10, -6.0 - seed % 4);
+    double taken = 0;
+    constexpr int parts = 400'000;
+    for (int n = 0; n < parts; ++n) {
+      const double t = until * (n + 0.5) / parts, x = a * std::sin(w * t), v = a * w * std::cos(w * t);
+      taken += c * v * v * x * x / (x * x + beside * beside) * until / parts;
+    }
+    const TextRun run = run_text(
+        R"({"catena": 1, "bodies": {"b": {"mass": 2, "inertia": 1}},
+        "constraints": [{"type": "translational", "i": "ground", "j": "b", "axis_i": [1, 0]}],
+        "drivers": [{"type": "absolute_x", "name": "d", "i": "b", "value": {"harmonic": {"amplitude": )" +
+        text_of(a) + R"(, "omega": )" + text_of(w) + R"(}}}],
+        "forces": [{"type": "spring_damper", "i": ["ground", )" +
+        pair_of(0, beside) + R"(], "j": "b", "length": 0, "k": )" + text_of(k) + R"(, "c": )" + text_of(c) +
+        R"(}], "outputs": ["d.work", "energy"], "analyses": [{"type": "dynamics", "digits": false, "until": )" +
+        text_of(until) + R"(, "every": )" + text_of(until / 7) + R"(, "method": ")" + methods[seed % 5] +
+        R"(", "tolerance": )" + text_of(tolerance) + "}]}");
+    if (!run.analysis().report.ok()) return run.analysis().report.message;
+    const double x = a * std::sin(w * until), v = a * w * std::cos(w * until);
+    const double done = taken + v * v - a * a * w * w + k * x * x / 2;
+    const double allowed = 1e-8 + 1000 * tolerance * (taken + a * a * w * w);
+    const double off = std::max(std::abs(run.last("energy.dissipated") - taken), std::abs(run.last("d.work") - done));
+    return off <= allowed ? "" : text_of(off) + " off, allowed " + text_of(allowed);
+  });
+}
+
+// The same past the length of a cable, of which no error of the motion tells: what the driver does is the change of the
+// energy.
+TEST(DrivenWork, OfACableThatBecomesTaut) {
+  for (const double k : {1e2, 1e4, 1e6}) {
+    for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
+      const TextRun run = run_text(
+          R"({"catena": 1, "bodies": {"b": {"mass": 2, "inertia": 1}},
+          "constraints": [{"type": "translational", "i": "ground", "j": "b", "axis_i": [1, 0]}],
+          "drivers": [{"type": "absolute_x", "name": "d", "i": "b", "value": {"harmonic": {"amplitude": 0.3, "omega": 4}}}],
+          "forces": [{"type": "cable", "i": "ground", "j": "b", "length": 0.2, "k": )" +
+          text_of(k) +
+          R"(}], "outputs": ["d.work", "energy"], "analyses": [{"type": "dynamics", "until": 3.2, "every": 0.4, "tolerance": )" +
+          text_of(tolerance) + "}]}");
+      ASSERT_TRUE(run.analysis().report.ok()) << k << " " << tolerance << ": " << run.analysis().report.message;
+      const double x = 0.3 * std::sin(12.8), v = 1.2 * std::cos(12.8), stretch = std::max(std::abs(x) - 0.2, 0.0);
+      const double done = v * v - 1.44 + k * stretch * stretch / 2;
+      EXPECT_NEAR(run.last("d.work"), done, 1e-9 * (1 + k * stretch * stretch));
+    }
+  }
 }
 
 }  // namespace

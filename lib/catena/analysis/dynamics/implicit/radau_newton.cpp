@@ -170,15 +170,19 @@ void Radau::sum_up_work(double h) {
   }
 }
 
-// The same estimate of the work of loads, which has no part in J.
+// The same estimate of the work of loads and of what dampers take, which have no part in J.
 double Radau::error_of_work(double h) const {
   if (motion_.works() == 0) return 0;
   const RadauTableau& table = radau_tableau();
-  const std::size_t work = 2 * motion_.coordinates() + ErrorScale::work_of_loads;
-  double error = h * slope_[work];
-  for (std::size_t i = 0; i < 3; ++i) error += table.error[i] * z_[i][work];
-  return scale_.size_of_work(std::abs(error) / table.real, y_[work], y_[work] + z_[2][work], h,
-                             motion_.equations().applied_forces());
+  double largest = 0;
+  for (const std::size_t place : ErrorScale::judged_integrals) {
+    const std::size_t k = 2 * motion_.coordinates() + place;
+    double error = h * slope_[k];
+    for (std::size_t i = 0; i < 3; ++i) error += table.error[i] * z_[i][k];
+    largest = std::max(largest, scale_.size_of_work(std::abs(error) / table.real, y_[k], y_[k] + z_[2][k], h,
+                                                    motion_.equations().applied_forces()));
+  }
+  return largest;
 }
 
 }  // namespace catena

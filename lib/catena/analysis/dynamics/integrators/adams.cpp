@@ -85,9 +85,9 @@ inline double Adams::weight(std::size_t c, double h) const {
   return h * std::max(v_unit > 0 ? 1 / v_unit : 0, h / scale_.position_unit(c, h));
 }
 
-// The same of the loads' power: see RungeKutta::error_of_work.
-double Adams::weight_of_work(double h) const {
-  const std::size_t work = 2 * motion_.coordinates() + ErrorScale::work_of_loads;
+// The same of the power of loads and of what dampers take: see RungeKutta::error_of_work.
+double Adams::weight_of_work(std::size_t place, double h) const {
+  const std::size_t work = 2 * motion_.coordinates() + place;
   return h * scale_.size_of_work(1, y_[work], y_[work] + h * slope_[work], h, motion_.equations().applied_forces());
 }
 
@@ -110,7 +110,8 @@ Adams::Errors Adams::estimate(double h) {
   for (std::size_t c = 0; c < motion_.moving(); ++c) {
     if (compare(c, weight(c, h))) culprit_ = static_cast<int>(c);
   }
-  if (motion_.works() > 0) compare(motion_.coordinates() + ErrorScale::work_of_loads, weight_of_work(h));
+  for (const std::size_t place : ErrorScale::judged(motion_.works()))
+    compare(motion_.coordinates() + place, weight_of_work(place, h));
   errors.now *= history_.sigma(k_ + 1, h) * steady_error[k_];
   if (one) errors.below *= history_.sigma(k_, h) * steady_error[k_ - 1];
   if (two) errors.far_below *= history_.sigma(k_ - 1, h) * steady_error[k_ - 2];
@@ -125,7 +126,7 @@ double Adams::estimate_above(double h) const {
     largest = std::max(largest, unit * std::abs(slope_[n + c] - predicted_[c] - difference_[k_ + 1][c]));
   };
   for (std::size_t c = 0; c < motion_.moving(); ++c) compare(c, weight(c, h));
-  if (motion_.works() > 0) compare(n + ErrorScale::work_of_loads, weight_of_work(h));
+  for (const std::size_t place : ErrorScale::judged(motion_.works())) compare(n + place, weight_of_work(place, h));
   return largest * steady_error[k_ + 1];
 }
 
@@ -155,9 +156,14 @@ void Adams::add_error(std::span<double> error) const {
 }
 
 double Adams::error_of_work(double h) const {
-  const std::size_t n = motion_.coordinates(), place = n + ErrorScale::work_of_loads;
+  const std::size_t n = motion_.coordinates();
   const double once = weights_.integral[k_] / weights_.value[k_] - weights_.integral[k_ + 1] / weights_.value[k_ + 1];
-  return weight_of_work(h) * std::abs(once * (slope_[n + place] - predicted_[place]));
+  double largest = 0;
+  for (const std::size_t place : ErrorScale::judged(motion_.works())) {
+    const double change = slope_[2 * n + place] - predicted_[n + place];
+    largest = std::max(largest, weight_of_work(place, h) * std::abs(once * change));
+  }
+  return largest;
 }
 
 // The error without most of the part that the projection at the step's end will remove.

@@ -53,7 +53,7 @@ class Adams final : public CrossingIntegrator {
   double weight(std::size_t c, double h) const;
   Errors estimate(double h);
   double error_of_step(double h);
-  double weight_of_work(double h) const;
+  double weight_of_work(std::size_t place, double h) const;
   double error_of_work(double h) const;
   double estimate_above(double h) const;
   double filtered(double h, double raw);

@@ -25,6 +25,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -90,8 +91,14 @@ class ErrorScale {
     return tolerance_ * (std::min(rate_ * unit, root_energy_ * speed_[c]) + std::abs(v)) +
            std::abs(h) * rounding(c) * unit;
   }
-  /// Where EnergyAccount has the work of the loads, among its integrals.
+  /// Where EnergyAccount has the work of the loads among its integrals; errors are judged of this one and of the first,
+  /// which is what dampers take.
   static constexpr std::size_t work_of_loads = 1;
+  static constexpr std::array<std::size_t, 2> judged_integrals{0, work_of_loads};
+  /// None where nothing is summed up.
+  static std::span<const std::size_t> judged(std::size_t works) {
+    return works > 0 ? std::span<const std::size_t>(judged_integrals) : std::span<const std::size_t>();
+  }
   /// An error of work, J, in a step that begins and ends with these sums, compared with what may be: a part of what the
   /// balance of energy may miss (balance_watch.hpp), by the kinetic energy and the work so far; at least what loads F
   /// do in displacements that count as nothing: F L (tolerance^2 + h^2 rounding). `loads`: at the end of the step of
@@ -178,7 +185,7 @@ class ErrorScale {
   }
 
   // In tolerances of a step, of which the balance may miss some 5000; steps add up.
-  static constexpr double work_part = 100;
+  static constexpr double work_part = 50;
   static constexpr double brief_run = 200, least_tolerance = 1e-15;
   double rate_ = 0, root_energy_ = 0, radians_ = 0, tolerance_ = 0;
   double place_tolerance_ = 0, place_rounding_ = 0;  // of lengths, in parts of L

@@ -195,9 +195,7 @@ bool RungeKutta::watches_energy() const {
   return projects() && energy_.watches(ratios_.at_start(), trials_.project_stages());
 }
 
-bool RungeKutta::tells_work() const {
-  return projects() && energy_.tells_work(std::min(ratios_.at_start(), ratios_.smallest()));
-}
+bool RungeKutta::tells_work() const { return projects() && energy_.tells_work(); }
 
 BalancedStep RungeKutta::balanced_step(double t, double h, std::span<const double> before, std::span<double> y) const {
   return {.t = t,

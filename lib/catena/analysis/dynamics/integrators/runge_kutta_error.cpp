@@ -82,17 +82,23 @@ void RungeKutta::add_error(std::span<double> error) const {
   }
 }
 
-// The error of the loads' work in units of what the balance of energy may miss: where a load changes in time and moves
-// nothing, no other error says so. Of drivers nothing is asked: their loads have no bound near singular positions.
+// The error of the loads' work and of what dampers take in units of what the balance of energy may miss: where a load
+// changes in time and moves nothing, and where drivers move all, no other error says so. Of drivers nothing is asked:
+// their loads have no bound near singular positions.
 double RungeKutta::error_of_work(double h) const {
-  const std::size_t load = 2 * motion_.coordinates() + ErrorScale::work_of_loads;
-  const auto sum = [&](const StageSum& weights) { return std::abs(h * stage_.sum(weights, load)); };
-  double error = sum(tableau().error);
-  if (tableau().order == 8 && error > 0) {
-    const double low = sum(tableau().error_low);
-    error *= error / std::sqrt(error * error + 0.01 * low * low);
+  double largest = 0;
+  for (const std::size_t place : ErrorScale::judged_integrals) {
+    const std::size_t k = 2 * motion_.coordinates() + place;
+    const auto sum = [&](const StageSum& weights) { return std::abs(h * stage_.sum(weights, k)); };
+    double error = sum(tableau().error);
+    if (error == 0) continue;
+    if (tableau().order == 8) {
+      const double low = sum(tableau().error_low);
+      error *= error / std::sqrt(error * error + 0.01 * low * low);
+    }
+    largest = std::max(largest, scale_.size_of_work(error, y_[k], y_new_[k], h, motion_.equations().applied_forces()));
   }
-  return scale_.size_of_work(error, y_[load], y_new_[load], h, motion_.equations().applied_forces());
+  return largest;
 }
 
 // The error without most of the part that the projection at the step's end will remove.

@@ -72,7 +72,7 @@ bool StepEnergy::watches(double ratio, bool crossing) const {
   return tells_ == Tells::speed && (crossing || ratio < dependence::singular_passage);
 }
 
-bool StepEnergy::tells_work(double ratio) const { return tells_ == Tells::work && ratio < dependence::near_passage; }
+bool StepEnergy::tells_work() const { return tells_ == Tells::work; }
 
 int StepEnergy::freedoms(const Motion& motion) const {
   EquationsOfMotion& equations = motion.equations();

@@ -16,7 +16,8 @@
 //
 // Where drivers move all of the mechanism it is the other way round: velocities follow from the constraints, and what
 // drivers do, -lambda nu, is a sharp pulse where the motion turns at a sine d from the position, of which stages see
-// little, and of which rounding takes eps / d^2 of T. The balance says how much they do together:
+// little, and of which rounding takes eps / d^2 of T; elsewhere it has a kink where a cable becomes taut, and no error
+// of the motion shortens a step there. The balance says how much they do together:
 //
 //   sum dW_k = T1 - T0 + V1 - V0 + dissipated - work of loads
 //
@@ -58,8 +59,8 @@ class StepEnergy {
 
   /// Whether steps from a place of this pivot ratio are balanced by their speed, if they are projected.
   bool watches(double ratio, bool crossing) const;
-  /// Whether the balance of steps with stages of this pivot ratio, if they are projected, says what drivers do.
-  bool tells_work(double ratio) const;
+  /// Whether the balance of steps, if they are projected, says what drivers do.
+  bool tells_work() const;
   /// Power P at a stage, at the evaluator's place, that of y.
   void note_power(const Motion& motion, std::size_t stage, std::span<const double> y);
   /// Balances a step. False: more energy is missing than the error of the step and its rounding explain.
