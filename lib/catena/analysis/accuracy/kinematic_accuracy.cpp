@@ -11,6 +11,11 @@ namespace catena {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+// So far places (length scales, rad) and rates (of the largest) may change by a disturbance: what is of second order is
+// then small beside the change. Ten times what equilibria allow: near a dead point the least disturbance, rounding
+// itself, changes rates by more than that.
+constexpr double largest_change = 1e-4;
+constexpr int most_attempts = 6;
 // Four rows take some eighty solves and a few factorizations: a small part of the run from this number of rows on, at
 // six solves and a factorization each.
 constexpr std::int64_t many_rows = 400;
@@ -109,7 +114,7 @@ bool KinematicAccuracy::examine(const Row& row) {
   if (!solver.respond(solver.phi(), kept_.change)) return false;
   for (std::size_t k = 0; k < kept_.change.size(); ++k) exact.q[k] -= kept_.change[k];
   // A row that is further off was not solved to the equations that hold here.
-  if (!(solver.distance(exact.q, row.q, nullptr) <= Disturbance::largest_way)) return false;
+  if (!(solver.distance(exact.q, row.q, nullptr) <= largest_change)) return false;
   solver.residual_at(exact.q);
   if (!solve_rates(exact, nullptr, 0)) return false;
   values_at(row, exact, kept_.first);
@@ -131,13 +136,14 @@ bool KinematicAccuracy::examine(const Row& row) {
 bool KinematicAccuracy::disturb(const Row& row, const State& exact) {
   const Disturbance begin = random_;
   State state;
-  // Less than rounding says nothing.
-  for (double size = Disturbance::amplification; size >= 1;) {
+  // What is put in solves linear equations: parts of one rounding tell as much as many.
+  double size = Disturbance::amplification;
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
     random_ = begin;
     if (!disturb_by(size, row, exact, state)) return false;
     const double changed = change(exact, state);
     if (!std::isfinite(changed)) return false;
-    if (changed <= Disturbance::largest_way) {
+    if (changed <= largest_change) {
       values_at(row, state, kept_.other);
       for (std::size_t k = 0; k < kept_.square.size(); ++k) {
         const double difference = (kept_.other[k] - kept_.first[k]) / size;
@@ -145,7 +151,7 @@ bool KinematicAccuracy::disturb(const Row& row, const State& exact) {
       }
       return true;
     }
-    size *= 0.1 * Disturbance::largest_way / changed;
+    size *= 0.1 * largest_change / changed;
   }
   return false;
 }
