@@ -53,14 +53,10 @@ std::vector<double> EquilibriumAccuracy::digits(const AnalysisReport& report) {
 // of the coordinates can close is left, as the search leaves it.
 void EquilibriumAccuracy::leave_what_closes(std::span<double> gap) {
   StaticSystem& system = analysis_.system();
-  const SparsePattern& rows = system.plan().jacobian;
   const std::vector<double> no_force(at(system.plan().columns));
   const StaticStep step = system.solve(no_force, gap, 1);
   std::fill(gap.begin(), gap.end(), 0.0);
-  for (std::size_t c = 0; c < no_force.size(); ++c) {
-    for (int k = rows.column_start[c]; k < rows.column_start[c + 1]; ++k)
-      gap[at(rows.row_index[at(k)])] += system.jacobian()[at(k)] * step.change[c];
-  }
+  multiply_add(system.plan().jacobian, system.jacobian(), step.change, gap);
 }
 
 // change_, change_lambda_ of these right-hand sides, which are spoilt. They are made as large as the forces in the

@@ -56,7 +56,9 @@ double way_of_motion(EquationsOfMotion& equations, double t, std::span<const dou
   const std::vector<double> none = beside.nothing(), first = beside.at(t, 0, 0);
   double largest = beside.apart(first, none), steepest = 0;
   std::vector<double> before = first;
-  for (int k = 1; k <= looked_at; ++k) {
+  const Evaluator& evaluator = equations.evaluator();
+  const bool changes = !evaluator.model().functions.empty() || !evaluator.laws().empty();
+  for (int k = 1; k <= looked_at && changes; ++k) {
     const double instant = k == looked_at ? last : t + (last - t) * k / looked_at;
     std::vector<double> now = beside.at(instant, 0, 0);
     largest = std::max(largest, beside.apart(now, none));

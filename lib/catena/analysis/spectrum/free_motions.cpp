@@ -62,11 +62,7 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   // Where forces balance only to rounding, stiffnesses are no more accurate.
   const double force = system.force_scale(lambda), left = system.force_norm(residual);
   const StiffnessFloor floor(system, lambda, left <= thresholds::no_force * force ? left : 0, &groups);
-  const std::vector<double> arms = body_arms(system, lambda);
-  std::vector<double> weight;
-  for (int coordinate : system.plan().coordinate) {
-    weight.push_back(coordinate % 3 == 2 ? arms[at(coordinate / 3)] * arms[at(coordinate / 3)] : 1);
-  }
+  const std::vector<double> weight = metric_of_arms(system, lambda);
   const DenseModes dense(system, groups, weight);
   FreeMotions result;
   // Groups move independently: a force on one does not hold another.

@@ -54,6 +54,8 @@ void reduce_stiffness(const KktMatrix& matrix, const MotionGroup& group, std::ve
 /// Per body of the plan, m: the distance from its origin at which constraints and forces act on it, the scene's length
 /// where all act at the origin. It makes turning and travel comparable in any units.
 std::vector<double> body_arms(StaticSystem& system, std::span<const double> lambda);
+/// The metric W in which turning over these arms and travel count alike, over columns: 1, or the arm's square, m^2.
+std::vector<double> metric_of_arms(StaticSystem& system, std::span<const double> lambda);
 
 /// The part of v^T K v that cannot be distinguished from zero, N m (v over columns): the rounding of all stiffnesses
 /// that act on the bodies that move, before they cancel; that of places far from the origin; that of the stiffest body

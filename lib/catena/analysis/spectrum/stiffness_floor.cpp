@@ -76,6 +76,14 @@ std::vector<double> body_arms(StaticSystem& system, std::span<const double> lamb
   return arms;
 }
 
+std::vector<double> metric_of_arms(StaticSystem& system, std::span<const double> lambda) {
+  const std::vector<double> arms = body_arms(system, lambda);
+  std::vector<double> weight;
+  for (const int coordinate : system.plan().coordinate)
+    weight.push_back(coordinate % 3 == 2 ? arms[at(coordinate / 3)] * arms[at(coordinate / 3)] : 1);
+  return weight;
+}
+
 StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual,
                                const MotionGroups* groups) {
   const Plan& plan = system.plan();

@@ -48,11 +48,7 @@ class Buckling::Spectrum {
   Report start() {
     StaticSystem& system = buckling_.system_;
     std::vector<double>& lambda = buckling_.point_.lambda;
-    const std::vector<double> arms = body_arms(system, lambda);
-    std::vector<double> weight;
-    for (int coordinate : system.plan().coordinate) {
-      weight.push_back(coordinate % 3 == 2 ? arms[at(coordinate / 3)] * arms[at(coordinate / 3)] : 1);
-    }
+    const std::vector<double> weight = metric_of_arms(system, lambda);
     MotionGroups* const groups = &buckling_.groups_.value();
     groups->orthonormalise(weight);
     system.fill(lambda, Curvature::exact, 0);

@@ -26,10 +26,8 @@ std::vector<double> driven_direction(StaticSystem& system, std::span<const doubl
   MotionGroups groups(system, true);
   if (!groups.are_small()) return {};
   const StiffnessFloor floor(system, lambda, 0, &groups);
-  const std::vector<double> arms = body_arms(system, lambda);
-  std::vector<double> weight, residual(at(system.plan().columns)), direction(residual.size(), 0.0);
-  for (const int coordinate : system.plan().coordinate)
-    weight.push_back(coordinate % 3 == 2 ? arms[at(coordinate / 3)] * arms[at(coordinate / 3)] : 1);
+  const std::vector<double> weight = metric_of_arms(system, lambda);
+  std::vector<double> residual(at(system.plan().columns)), direction(residual.size(), 0.0);
   system.residual(lambda, residual);
   const DenseModes dense(system, groups, weight);
   for (const Mode& mode : dense.lowest(0, floor)) {

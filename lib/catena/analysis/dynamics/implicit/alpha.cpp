@@ -110,13 +110,7 @@ bool Alpha::advance(double limit) {
 
 // A step across a singular position.
 bool Alpha::advance_by_runge_kutta(double limit) {
-  const double start = t_;
-  if (!step_by_runge_kutta(limit, h_, scale_, slope_)) return false;
-  if (has_crossed()) {
-    begin_anew();
-    h_ = options_.fixed_step > 0 ? options_.fixed_step : std::min(h_, t_ - start);
-  }
-  return true;
+  return step_across(limit, options_.fixed_step, h_, scale_, slope_, [this] { begin_anew(); });
 }
 
 // q1 and v1 from A1.

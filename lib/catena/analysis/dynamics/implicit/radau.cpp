@@ -196,13 +196,7 @@ bool Radau::is_smooth() {
 
 // A step across a singular position.
 bool Radau::advance_by_runge_kutta(double limit) {
-  const double start = t_;
-  if (!step_by_runge_kutta(limit, h_, scale_, slope_)) return false;
-  if (has_crossed()) {
-    forget();
-    h_ = options_.fixed_step > 0 ? options_.fixed_step : std::min(h_, t_ - start);
-  }
-  return true;
+  return step_across(limit, options_.fixed_step, h_, scale_, slope_, [this] { forget(); });
 }
 
 void Radau::remember(const IntegratorMemory& memory) {

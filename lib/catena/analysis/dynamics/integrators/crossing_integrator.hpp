@@ -6,6 +6,8 @@
 // (error_scale.hpp) and takes whole turns out of it: they must be taken only once. Times in s.
 #pragma once
 
+#include <algorithm>
+
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
 
 namespace catena {
@@ -28,6 +30,19 @@ class CrossingIntegrator : public Integrator {
   /// A step of Runge-Kutta from time() and state(), which are its end afterwards, as is `slope` (y'); `first`: size of
   /// the first one, s. False: none can be made.
   bool step_by_runge_kutta(double limit, double first, ErrorScale& scale, std::span<double> slope);
+  /// The same for a method whose next step is `h`, or always `fixed` if this is not zero: behind the passage
+  /// begin_anew() is called, and h is no longer than the last step across.
+  template <class BeginAnew>
+  bool step_across(double limit, double fixed, double& h, ErrorScale& scale, std::span<double> slope,
+                   BeginAnew&& begin_anew) {
+    const double start = t_;
+    if (!step_by_runge_kutta(limit, h, scale, slope)) return false;
+    if (has_crossed()) {
+      begin_anew();
+      h = fixed > 0 ? fixed : std::min(h, t_ - start);
+    }
+    return true;
+  }
   /// Counts a step across, and says whether the passage lies behind it: then another method may go on.
   bool has_crossed();
   /// The memory of a scale, with step (s) and pivots.
