@@ -104,6 +104,11 @@ class Resolver {
   /// Looks up what an own column is made of; throws for what cannot be.
   void read(const Column& column) {
     if (column.kind != ColumnKind::own) return;
+    const auto own = static_cast<std::size_t>(column.index), count = model_.own_columns.size();
+    if (own >= count) {
+      own_inputs_[own] = model_.laws[own - count].inputs;
+      return;
+    }
     if (auto unknown = find_own_inputs(model_, column.index, own_inputs_)) throw ColumnError(std::move(*unknown));
   }
   const OwnInputs& own_inputs() const { return own_inputs_; }
@@ -167,7 +172,7 @@ class Resolver {
   const Plan& plan_;
   const ColumnSources& sources_;
   int without_mass_;
-  OwnInputs own_inputs_ = OwnInputs(model_.own_columns.size());
+  OwnInputs own_inputs_ = OwnInputs(model_.own_columns.size() + model_.laws.size());
   std::array<LeftOut, lacks> left_out_;
 };
 

@@ -167,7 +167,7 @@ class RowValues {
     const auto k = static_cast<std::size_t>(column.index);
     SwitchNotes<S> notes{column.detail};
     note_switches(
-        s_.model().own_columns[k].formula,
+        formula_of(s_.model(), column.index),
         [&](std::uint32_t input) { return value(own_inputs_[k][static_cast<std::size_t>(input)]); }, notes);
     return notes.difference;
   }

@@ -1,12 +1,13 @@
 // Where formulas of own columns switch: at every abs, min and max of them.
 //
-//   abs(a): s = a        min(a, b), max(a, b): s = +-(a - b)        the branch, and the derivative, changes where s
-//   does
+//   abs(a): s = a        min(a, b), max(a, b): s = +-(a - b)        table(a), held beyond its end e: s = a - e
 //
-// its sign. A switch is a column like others, called "NAME switch K", K from 0 in the order of evaluation: it has
-// values and derivatives wherever NAME has. A formula is evaluated with a scalar that takes down what its comparisons
-// were made between; nothing else is looked at, and formulas without switches are not touched. Derivatives of a column
-// are those of one branch at s = 0. Source: A. Griewank, A. Walther, Evaluating Derivatives (2008), section 14.1.
+// the branch, and the derivative, changes where s changes its sign. A switch is a column like others, called "NAME
+// switch K", K from 0 in the order of evaluation: it has values and derivatives wherever NAME has. A formula is
+// evaluated with a scalar that takes down what its comparisons were made between; nothing else is looked at, and
+// formulas without switches are not touched. Derivatives of a column are those of one branch at s = 0. What shows loads
+// switches too where an elastic cable or rope that acts as a force becomes taut, s its gap, and by what laws of state
+// compare ("law L switch K"). Source: A. Griewank, A. Walther, Evaluating Derivatives (2008), section 14.1.
 #pragma once
 
 #include <cmath>
@@ -69,9 +70,13 @@ class Noted {
   friend Noted exp(const Noted& a) { return a.smooth(Operation::exp); }
   friend Noted log(const Noted& a) { return a.smooth(Operation::log); }
 
-  /// The number of a table there.
+  /// The number of a table there; one that is held beyond its ends bends at them.
   template <class Table>
   Noted look_up(const Table& table) const {
+    if (notes_ && table.curve.beyond() == Beyond::hold && !table.curve.periodic()) {
+      notes_->take(v_ - R(table.curve.first()));
+      notes_->take(v_ - R(table.curve.last()));
+    }
     if (!table.curve.covers(value_of(v_))) return {R(std::numeric_limits<double>::quiet_NaN()), notes_};
     return {table.curve.evaluate(v_).f, notes_};
   }
@@ -96,5 +101,9 @@ std::optional<NamedColumn> find_switch(const Model& model, std::string_view name
 
 /// The names of all switches of a column and of the own columns that it is made of; none of any other name.
 std::vector<std::string> switches_of(const Model& model, const std::string& name);
+
+/// By what the loads that a column shows switch: gaps of elastic cables and ropes that act as forces, and the
+/// comparisons that laws of state make; `multipliers`: the column needs those of the constraints, and so all loads.
+std::vector<std::string> switches_of_loads(const Model& model, const std::string& name, bool multipliers);
 
 }  // namespace catena
