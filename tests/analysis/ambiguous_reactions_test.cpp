@@ -2,7 +2,7 @@
 // null space of Phi_q^T by dense singular value decomposition.
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -17,6 +17,7 @@
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/elements/constraints/weld.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 namespace {
@@ -166,14 +167,14 @@ std::optional<NullSpace> left_null_space(Evaluator& evaluator) {
     }
   }
   for (int r = 0; r < plan.rows; ++r) a.row(r).normalize();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullU);
-  const Eigen::VectorXd& sigma = svd.singularValues();
+  const SingularValues svd = singular_values(a, true);
+  const Eigen::VectorXd& sigma = svd.values;
   NullSpace space;
   for (int k = 0; k < sigma.size(); ++k) {
     if (sigma[k] > 1e-13 && sigma[k] < 1e-4) return std::nullopt;
     space.rank += sigma[k] >= 1e-4;
   }
-  const Eigen::MatrixXd null = svd.matrixU().rightCols(plan.rows - space.rank);
+  const Eigen::MatrixXd null = svd.u.rightCols(plan.rows - space.rank);
   space.share.assign(evaluator.model().elements.size(), 0.0);
   for (int r = 0; r < plan.rows; ++r) {
     double& share = space.share[static_cast<std::size_t>(plan.row_element[static_cast<std::size_t>(r)])];

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,6 +14,7 @@
 #include "catena/elements/constraints/absolute_x.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/model/model_add.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 namespace {
@@ -135,7 +136,7 @@ TEST(MinimumNormMotion, VelocitiesAreThePseudoInverseOfDenseAlgebra) {
         jacobian(plan.jacobian.row_index[place], c) = values[place] / root[c];
       }
     }
-    const Eigen::VectorXd expected = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(jacobian)
+    const Eigen::VectorXd expected = LeastSquares<double>(jacobian)
                                          .solve(Eigen::Map<const Eigen::VectorXd>(nu.data(), plan.rows))
                                          .cwiseQuotient(root);
     for (int c = 0; c < plan.columns; ++c) {

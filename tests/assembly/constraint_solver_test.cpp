@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <random>
 
@@ -14,6 +14,7 @@
 #include "catena/base/at.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/model/model_add.hpp"
+#include "references/dense.hpp"
 
 namespace catena {
 namespace {
@@ -89,11 +90,11 @@ struct Least {
 };
 Least least_by_svd(const MatrixXd& phi, const VectorXd& w, const VectorXd& b) {
   const VectorXd root = inverse(w).cwiseSqrt();
-  Eigen::JacobiSVD<MatrixXd> svd(phi * root.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(1e-10);
-  const VectorXd& size = svd.singularValues();
-  const double least = svd.rank() > 0 ? size[svd.rank() - 1] : 1;
-  return {root.asDiagonal() * svd.solve(b), least > 1e-4 * size[0] ? size[0] / least : INFINITY, svd.rank()};
+  const SingularValues svd = singular_values(phi * root.asDiagonal());
+  const Eigen::Index rank = svd.rank(1e-10);
+  const double least = rank > 0 ? svd.values[rank - 1] : 1;
+  return {root.asDiagonal() * svd.solve(b, rank), least > 1e-4 * svd.values[0] ? svd.values[0] / least : INFINITY,
+          rank};
 }
 
 TEST(ConstraintSolver, TheLeastChangeIsThatOfSingularValues) {
@@ -149,7 +150,7 @@ TEST(ConstraintSolver, CompliantRowsAreMetInPart) {
     solver.solve(view(b), view(x), view(lambda), counters);
     const MatrixXd transposed = inverse(w).asDiagonal() * linkage.phi.transpose();
     const MatrixXd full = linkage.phi * transposed + MatrixXd(compliance.asDiagonal());
-    const VectorXd expected = full.ldlt().solve(b);
+    const VectorXd expected = solve<double>(full, b);
     EXPECT_LE((lambda - expected).norm(), 1e-9 * expected.norm()) << seed;
     EXPECT_LE((x - transposed * expected).norm(), 1e-9 * x.norm()) << seed;
     // What is asked for without compliance afterwards has none.
@@ -169,10 +170,10 @@ VectorXd dense_motion(const Linkage& linkage, const VectorXd& mass, const Vector
   full.bottomLeftCorner(rows, n) = linkage.phi;
   VectorXd right(n + rows);
   right << Q, gamma;
-  Eigen::JacobiSVD<MatrixXd> svd(full, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(1e-11);
-  if (svd.singularValues()[svd.rank() - 1] < 1e-4 * svd.singularValues()[0]) return {};
-  return svd.solve(right).head(n);
+  const SingularValues svd = singular_values(full);
+  const Eigen::Index rank = svd.rank(1e-11);
+  if (svd.values[rank - 1] < 1e-4 * svd.values[0]) return {};
+  return svd.solve(right, rank).head(n);
 }
 
 TEST(ConstraintSolver, AccelerationsAreThoseOfTheFullSystem) {

@@ -1,7 +1,7 @@
 // Matrices for the tests of linalg, sparse and dense at once, from a generator that gives the same numbers everywhere.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 

@@ -2,13 +2,14 @@
 // against all choices there are.
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <limits>
 #include <random>
 #include <vector>
 
 #include "catena/linalg/pivoting/lemke.hpp"
 #include "catena/linalg/pivoting/vertex_minimum.hpp"
+#include "references/dense.hpp"
 
 namespace catena {
 namespace {
@@ -82,8 +83,8 @@ double least_of_all(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, const st
     if (static_cast<Eigen::Index>(chosen.size()) != A.rows()) continue;
     Eigen::MatrixXd square(A.rows(), A.rows());
     for (Eigen::Index c = 0; c < square.cols(); ++c) square.col(c) = A.col(chosen[static_cast<std::size_t>(c)]);
-    if (std::abs(square.determinant()) < 1e-9) continue;
-    const Eigen::VectorXd w = square.inverse() * b;
+    if (std::abs(catena::testing::ReferenceFactors<double>(square).determinant()) < 1e-9) continue;
+    const Eigen::VectorXd w = catena::testing::solve<double>(square, b);
     if (w.minCoeff() < -1e-10) continue;
     double value = 0;
     for (Eigen::Index c = 0; c < w.size(); ++c)

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "linalg/matrices.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 namespace {
@@ -28,7 +29,7 @@ int rank_by_singular_values(Eigen::MatrixXd a) {
   for (int i = 0; i < a.rows(); ++i)
     if (a.row(i).norm() > 0) a.row(i).normalize();
   if (a.size() == 0) return 0;
-  const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
+  const Eigen::VectorXd sigma = singular_values(a).values;
   return static_cast<int>((sigma.array() > 1e-9).count());
 }
 

@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "linalg/matrices.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 namespace {
@@ -37,7 +38,7 @@ Eigen::MatrixXd quasi_definite(int n, int m, double eps, Random& random) {
 }
 
 Inertia inertia_by_eigenvalues(const Eigen::MatrixXd& full) {
-  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full).eigenvalues();
+  const Eigen::VectorXd values = symmetric_eigenvalues<double>(full);
   return {static_cast<int>((values.array() > 0).count()), static_cast<int>((values.array() < 0).count()), 0};
 }
 

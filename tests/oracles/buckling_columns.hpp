@@ -6,7 +6,7 @@
 //   all weights share one law w_k(p) = w_k f(p): K = C - f D, singular at the eigenvalues f_i of (C, D);  f(p) = f_i
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -19,6 +19,7 @@
 #include "catena/elements/forces/point_force.hpp"
 #include "catena/elements/forces/torsion_spring.hpp"
 #include "catena/model/model_add.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 
@@ -126,8 +127,7 @@ class BucklingColumn {
         c(k - 1, k) -= springs_[i];
       }
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(c, d, Eigen::EigenvaluesOnly);
-    return {solver.eigenvalues().data(), solver.eigenvalues().data() + n};
+    return generalized_eigenvalues<long double>(c, d);
   }
 
   double length_, stiffness_, unit_, present_;

@@ -3,12 +3,12 @@
 // algebra is in 80 bits, so that its rounding, relative to the largest of eigenvalues over many orders, does not count.
 #pragma once
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 
@@ -41,13 +41,10 @@ inline std::vector<double> dense_omega2(Evaluator& evaluator, std::span<const do
   Matrix basis = Matrix::Identity(n, n);
   if (m > 0) {
     // Phi_q is given to double precision: what it has of rank below that is rounding.
-    Eigen::ColPivHouseholderQR<Matrix> transposed(n, m);
-    transposed.setThreshold(1e-12L);
-    transposed.compute(jacobian.transpose());
-    const Vector multipliers = transposed.solve(force);
+    const DenseRows<long double> rows(jacobian, 1e-12L);
+    const Vector multipliers = rows.multipliers(force);
     std::copy(multipliers.data(), multipliers.data() + m, lambda.begin());
-    const Matrix all = transposed.householderQ() * Matrix::Identity(n, n);
-    basis = all.rightCols(n - transposed.rank());
+    basis = rows.null_space();
   }
   Matrix stiffness = Matrix::Zero(n, n);
   const auto add = [&](int body_i, int body_j, const auto& element) {
@@ -64,8 +61,8 @@ inline std::vector<double> dense_omega2(Evaluator& evaluator, std::span<const do
   evaluator.visit_stiffness({}, add);
   evaluator.visit_constraint_hessians(lambda, add);
   const Matrix k = basis.transpose() * stiffness * basis, mm = basis.transpose() * mass.asDiagonal() * basis;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver((k + k.transpose()) / 2, mm, Eigen::EigenvaluesOnly);
-  return {solver.eigenvalues().data(), solver.eigenvalues().data() + solver.eigenvalues().size()};
+  const std::vector<long double> omega2 = generalized_eigenvalues<long double>(k, mm);
+  return {omega2.begin(), omega2.end()};
 }
 
 }  // namespace catena::testing

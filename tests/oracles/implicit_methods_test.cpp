@@ -2,13 +2,14 @@
 // energy and the symmetry in time that rattle is there for.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
 #include <random>
 
 #include "analysis/sanitized.hpp"
 #include "catena/analysis/dynamics/implicit/radau.hpp"
 #include "oracles/scene_text.hpp"
+#include "references/dense.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
@@ -67,7 +68,6 @@ struct SpringChain {
   Eigen::Vector3d exact(double t) const {
     // Its slow eigenvalues are known to epsilon times the fastest one squared.
     using Matrix = Eigen::Matrix<long double, 6, 6>;
-    using Vector = Eigen::Matrix<std::complex<long double>, 6, 1>;
     Matrix rates = Matrix::Zero();
     rates.topRightCorner<3, 3>().setIdentity();
     for (int k = 0; k < 3; ++k) {
@@ -80,15 +80,21 @@ struct SpringChain {
         }
       }
     }
-    const Eigen::EigenSolver<Matrix> solver(rates);
-    Vector start = Vector::Zero();
+    const auto [values, vectors] = spectrum<long double>(rates);
+    // Weights of the eigenvectors, complex, as the real and the imaginary part of the start.
+    DenseMatrix<long double> parts(12, 12);
+    parts << vectors.real(), -vectors.imag(), vectors.imag(), vectors.real();
+    DenseVector<long double> start = DenseVector<long double>::Zero(12);
     for (int k = 0; k < 3; ++k) start[k] = place[k];
-    const auto weights = solver.eigenvectors().partialPivLu().solve(start).eval();
-    Vector now = Vector::Zero();
-    for (int k = 0; k < 6; ++k)
-      now +=
-          weights[k] * std::exp(solver.eigenvalues()[k] * static_cast<long double>(t)) * solver.eigenvectors().col(k);
-    return now.head<3>().real().cast<double>();
+    const DenseVector<long double> weights = solve<long double>(parts, start);
+    Eigen::Vector3d now = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 6; ++k) {
+      const std::complex<long double> part =
+          std::complex<long double>(weights[k], weights[6 + k]) *
+          std::exp(values[static_cast<std::size_t>(k)] * static_cast<long double>(t));
+      now += (part * vectors.col(k).head(3)).real().cast<double>();
+    }
+    return now;
   }
   std::mt19937 random;
   std::array<double, 3> mass{}, stiffness{}, damping{}, place{};

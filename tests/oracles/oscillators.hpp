@@ -7,7 +7,7 @@
 // omega^2 in rate() times these numbers.
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -21,6 +21,7 @@
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/elements/forces/torsion_spring.hpp"
 #include "catena/model/model_add.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 
@@ -59,8 +60,7 @@ class Oscillator {
   /// In units of rate(), ascending.
   std::vector<long double> omega2() const {
     const Matrix k = allowed_.transpose() * k_ * allowed_, m = allowed_.transpose() * m_ * allowed_;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver((k + k.transpose()) / 2, m, Eigen::EigenvaluesOnly);
-    return {solver.eigenvalues().data(), solver.eigenvalues().data() + solver.eigenvalues().size()};
+    return generalized_eigenvalues<long double>(k, m);
   }
   /// Whether the given place is an equilibrium: else there are no exact zeros.
   bool is_balanced() const { return balanced_; }

@@ -8,6 +8,7 @@
 #include "oracles/random_seeds.hpp"
 #include "oracles/scene_text.hpp"
 #include "oracles/state_law_references.hpp"
+#include "references/dense.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
@@ -106,8 +107,8 @@ std::string random_balance(unsigned seed, int& unsolved) {
     }
     b(i) = random(-2, 2);
   }
-  const Eigen::VectorXd rest = (k + p * by_p).fullPivLu().solve(b);
-  const Eigen::VectorXd rest_p = (k + p * by_p).fullPivLu().solve(-by_p * rest);
+  const Eigen::VectorXd rest = solve<double>(k + p * by_p, b);
+  const Eigen::VectorXd rest_p = solve<double>(k + p * by_p, -by_p * rest);
   const auto name = [](int i) { return "p" + std::to_string(i / 2) + (i % 2 == 0 ? ".x" : ".y"); };
   std::string bodies, forces, outputs;
   for (int body = 0; body < count; ++body) {

@@ -2,12 +2,14 @@
 // the knots, and motions by the classical Runge-Kutta method with many small steps. No code of the library.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "references/dense.hpp"
 
 namespace catena::testing {
 
@@ -52,7 +54,7 @@ class ReferenceSpline {
       a(n - 1, n - 1) += 4 / width(n - 2);
       b(n - 1) = 6 * slope(0) / width(0) + 6 * slope(n - 2) / width(n - 2);
     }
-    const Eigen::VectorXd m = a.fullPivLu().solve(b);
+    const Eigen::VectorXd m = solve<double>(a, b);
     slope_.assign(m.data(), m.data() + n);
   }
 

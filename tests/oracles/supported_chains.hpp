@@ -17,11 +17,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <numbers>
 #include <string>
 
 #include "oracles/slack_nets.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 
@@ -160,13 +161,9 @@ class ChainStatics {
     }
     Eigen::MatrixXd constraints(static_cast<Eigen::Index>(rows.size()), n);
     for (std::size_t r = 0; r < rows.size(); ++r) constraints.row(static_cast<Eigen::Index>(r)) = rows[r] / l;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> space(constraints.transpose());
-    const Eigen::Index rank = space.rank();
-    if (rank == n) return 1;
-    const Eigen::MatrixXd full = space.matrixQ();
-    const Eigen::MatrixXd basis = full.rightCols(n - rank);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(basis.transpose() * hessian * basis);
-    return spectrum.eigenvalues()[0] / hessian.cwiseAbs().maxCoeff();
+    const Eigen::MatrixXd basis = DenseRows<double>(constraints, 1e-14 * n).null_space();
+    if (basis.cols() == 0) return 1;
+    return symmetric_eigenvalues<double>(basis.transpose() * hessian * basis)[0] / hessian.cwiseAbs().maxCoeff();
   }
 
  private:
@@ -187,7 +184,7 @@ class ChainStatics {
       }
       b[k] = cross_e(k, {0, chain_.weight * (k + 0.5)});
     }
-    const Eigen::VectorXd x = a.completeOrthogonalDecomposition().solve(b);
+    const Eigen::VectorXd x = LeastSquares<double>(a).solve(b);
     left_ = (a * x - b).cwiseAbs().maxCoeff();
     push_.assign(x.data() + 2, x.data() + unknowns);
     Vec2<double> force{x[0], x[1]};

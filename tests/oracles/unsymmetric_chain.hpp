@@ -8,8 +8,7 @@
 // Springs are set so that the given angles are in balance.
 #pragma once
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "oracles/scene_text.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 
@@ -88,9 +88,8 @@ class UnsymmetricChain {
 
   /// All omega2, ascending in the real part.
   std::vector<WideValue> omega2() const {
-    const WideMatrix a = masses().partialPivLu().solve(stiffness());
-    const Eigen::EigenSolver<WideMatrix> solver(a, false);
-    std::vector<WideValue> values(solver.eigenvalues().data(), solver.eigenvalues().data() + size());
+    const WideMatrix a = ReferenceFactors<Wide>(masses()).solve_all(stiffness());
+    std::vector<WideValue> values = eigenvalues<Wide>(a);
     std::sort(values.begin(), values.end(), [](const WideValue& x, const WideValue& y) {
       return x.real() != y.real() ? x.real() < y.real() : x.imag() < y.imag();
     });

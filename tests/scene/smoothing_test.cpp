@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include "catena/base/spline.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 namespace {
@@ -83,7 +84,7 @@ TEST(Smoothing, EndsAtTheStraightLineOfLeastSquares) {
     a.row(k) << 1, x[static_cast<std::size_t>(k)];
     b[k] = y[static_cast<std::size_t>(k)];
   }
-  const Eigen::VectorXd line = a.colPivHouseholderQr().solve(b);
+  const Eigen::VectorXd line = LeastSquares<double>(a).solve(b);
   const Smoothed smoothed = smooth_values(x, Columns{y}, 10, false);
   for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(smoothed.values[0][k], line[0] + line[1] * x[k], 1e-9);
   EXPECT_LT(smoothed.rms, 0.11);

@@ -10,11 +10,12 @@
 // where the rows that were kept become dependent. Method of integration: as KnownPath in oracles/known_motion.hpp.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <functional>
 #include <vector>
 
 #include "oracles/known_motion.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 
@@ -144,11 +145,7 @@ class DenseMechanism {
     for (Eigen::Index k = 2; k < size(); k += 3) scaled.col(k) /= length;
     for (Eigen::Index k = 0; k < scaled.rows(); ++k) scaled.row(k).normalize();
     if (scaled.rows() == 0) return {};
-    Eigen::ColPivHouseholderQR<Matrix> qr(scaled.transpose());
-    qr.setThreshold(1e-9L);
-    std::vector<Eigen::Index> kept;
-    for (Eigen::Index k = 0; k < qr.rank(); ++k) kept.push_back(qr.colsPermutation().indices()[k]);
-    return kept;
+    return DenseRows<Real>(scaled, 1e-9L).independent();
   }
 };
 
@@ -226,7 +223,7 @@ inline Vector acceleration(const DenseMechanism& m, const std::vector<Eigen::Ind
     kkt.block(0, n + k, n, 1) = full.row(row).transpose();
     right[n + k] = -phi[static_cast<std::size_t>(row)].dd;
   }
-  return kkt.partialPivLu().solve(right).head(n);
+  return solve<Real>(kkt, right).head(n);
 }
 
 }  // namespace catena::testing

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "oracles/claimed_digits.hpp"
+#include "references/dense.hpp"
 #include "stress/random_scene.hpp"
 
 namespace catena::testing {
@@ -34,19 +35,19 @@ inline ExactState exact_state(const DenseMechanism& dense, const std::vector<Eig
   Real last = 1e300L;
   for (int k = 0; k < 6; ++k) {
     const std::vector<Jet> phi = dense.residuals(t, q, zero, zero);
-    const Vector step = matrix().fullPivLu().solve(of_kept([&](std::size_t r) { return phi[r].f; }));
+    const Vector step = solve<Real>(matrix(), of_kept([&](std::size_t r) { return phi[r].f; }));
     q -= step;
     last = step.cwiseAbs().maxCoeff();
   }
   ExactState state;
   if (!(last < 1e-15L * std::max(Real(1), q.cwiseAbs().maxCoeff()))) return state;
-  const auto lu = matrix().fullPivLu();
+  const ReferenceFactors<Real> lu(matrix());
   const std::vector<Jet> at_rest = dense.residuals(t, q, zero, zero);
   state.v = lu.solve(of_kept([&](std::size_t r) { return -at_rest[r].d; }));
   const std::vector<Jet> moving = dense.residuals(t, q, state.v, zero);
   state.a = lu.solve(of_kept([&](std::size_t r) { return -moving[r].dd; }));
   const Vector inertia = dense.masses().cwiseProduct(state.a) - dense.forces(t, q, state.v);
-  state.loads = matrix().transpose().fullPivLu().solve(inertia);
+  state.loads = solve<Real>(matrix().transpose(), inertia);
   state.q = q;
   return state;
 }

@@ -11,6 +11,7 @@
 
 #include "oracles/claimed_digits.hpp"
 #include "oracles/unsymmetric_chain.hpp"
+#include "references/dense.hpp"
 
 namespace catena::testing {
 
@@ -43,9 +44,7 @@ struct FlutteringChain {
   }
 
   std::vector<WideValue> omega2(Wide load) const {
-    const WideMatrix a = m.partialPivLu().solve(k_0 + load * (k_1 - k_0));
-    const Eigen::EigenSolver<WideMatrix> solver(a, false);
-    return {solver.eigenvalues().data(), solver.eigenvalues().data() + a.rows()};
+    return eigenvalues<Wide>(ReferenceFactors<Wide>(m).solve_all(k_0 + load * (k_1 - k_0)));
   }
   /// Mean and D of the two values for which `measure` of both is least.
   template <class Measure>

@@ -11,6 +11,7 @@
 
 #include <array>
 
+#include "references/dense.hpp"
 #include "stress/dense_mechanism.hpp"
 
 namespace catena::testing {
@@ -69,7 +70,7 @@ class ImplicitExtrapolation {
   bool euler(Real h, int parts, Vector& out) {
     const Eigen::Index n = q_.size();
     const Real g = h / parts;
-    const Eigen::PartialPivLU<Matrix> lu(Matrix::Identity(n, n) - g * by_velocity_ - g * g * by_place_);
+    const ReferenceFactors<Real> lu(Matrix::Identity(n, n) - g * by_velocity_ - g * g * by_place_);
     Vector q = q_, v = v_;
     for (int k = 1; k <= parts; ++k) {
       Vector w = v;

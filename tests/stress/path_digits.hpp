@@ -11,6 +11,7 @@
 
 #include "oracles/claimed_digits.hpp"
 #include "oracles/scene_text.hpp"
+#include "references/dense.hpp"
 #include "stress/dense_mechanism.hpp"
 
 namespace catena::testing {
@@ -34,7 +35,7 @@ struct TruePath {
   }
   /// Goes from z to the path, across its direction; false where it does not arrive.
   bool mend(Vector& z) const {
-    Matrix kernel = gradient(z).fullPivLu().kernel();
+    Matrix kernel = ReferenceFactors<Real>(gradient(z)).kernel();
     if (kernel.cols() != 1) return false;
     Real last = 1;
     for (int k = 0; k < 6; ++k) {
@@ -42,7 +43,7 @@ struct TruePath {
       bordered << gradient(z), kernel.transpose();
       Vector side = Vector::Zero(z.size());
       side.head(z.size() - 1) = equations(z);
-      const Vector step = bordered.fullPivLu().solve(side);
+      const Vector step = solve<Real>(bordered, side);
       z -= step.cwiseProduct(scale);
       last = step.cwiseAbs().maxCoeff();
     }

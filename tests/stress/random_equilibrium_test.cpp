@@ -8,9 +8,10 @@
 // one, or a place nearby has less energy than one that is called stable.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include "oracles/random_seeds.hpp"
+#include "references/dense.hpp"
 #include "scene/run_text.hpp"
 #include "stress/cases.hpp"
 #include "stress/random_scene.hpp"
@@ -29,19 +30,16 @@ class RestingPlace {
       weights_[k] = 1 / jacobian.row(k).norm();
       jacobian.row(k) *= weights_[k];
     }
-    rows_.setThreshold(1e-7L);
-    rows_.compute(jacobian);
+    rows_ = LeastSquares<Real>(jacobian, 1e-7L);
     const Eigen::Index n = dense_.size();
     if (jacobian.rows() == 0) {
       basis_ = Matrix::Identity(n, n);
       return;
     }
-    Eigen::ColPivHouseholderQR<Matrix> qr(jacobian.transpose());
-    qr.setThreshold(1e-7L);
-    rank_ = qr.rank();
-    least_pivot_ = rank_ > 0 ? std::abs(qr.matrixR()(rank_ - 1, rank_ - 1)) : 1;
-    const Matrix all = qr.householderQ();
-    basis_ = all.rightCols(n - rank_);
+    const DenseRows<Real> rows(jacobian, 1e-7L);
+    rank_ = rows.rank();
+    least_pivot_ = rows.least_pivot();
+    basis_ = rows.null_space();
   }
 
   Eigen::Index freedoms() const { return basis_.cols(); }
@@ -100,7 +98,7 @@ class RestingPlace {
   double size_;
   Vector q_, weights_;
   Matrix basis_;
-  Eigen::CompleteOrthogonalDecomposition<Matrix> rows_;
+  LeastSquares<Real> rows_{Matrix()};
   Eigen::Index rank_ = 0;
   Real least_pivot_ = 1;
 };
@@ -165,7 +163,7 @@ std::string equilibrium_fault(unsigned seed, std::map<std::string, int>& seen) {
   }
   if (place.freedoms() == 0) return ++seen["(rigid)"], "";
   if (stiffness == 0) return ++seen["(no loads)"], "";
-  const Vector curvature = Eigen::SelfAdjointEigenSolver<Matrix>(place.hessian()).eigenvalues() / stiffness;
+  const Vector curvature = symmetric_eigenvalues<Real>(place.hessian()) / stiffness;
   const auto count = [&](auto&& holds) {
     std::int64_t sum = 0;
     for (const Real c : curvature) sum += holds(c);

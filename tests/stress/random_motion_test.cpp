@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "oracles/random_seeds.hpp"
+#include "references/dense.hpp"
 #include "scene/run_text.hpp"
 #include "stress/cases.hpp"
 #include "stress/dense_motion.hpp"
@@ -93,7 +94,7 @@ Vector driven_velocity(const DenseMechanism& dense, Real t, const Vector& q) {
   const std::vector<Jet> phi = dense.residuals(t, q, zero, zero);
   Vector right(static_cast<Eigen::Index>(phi.size()));
   for (std::size_t k = 0; k < phi.size(); ++k) right[static_cast<Eigen::Index>(k)] = -phi[k].d;
-  return dense.jacobian(t, q).householderQr().solve(right);
+  return solve<Real>(dense.jacobian(t, q), right);
 }
 
 // Drivers are added until nothing is free; only mechanisms without redundant rows are taken, whose equations are
@@ -143,11 +144,11 @@ std::string kinematics_fault(unsigned seed, std::map<std::string, int>& seen) {
   const std::vector<Jet> phi = dense.residuals(until, q, v, zero);
   Vector right(count);
   for (Eigen::Index k = 0; k < count; ++k) right[k] = -phi[static_cast<std::size_t>(k)].dd;
-  const Vector a = jacobian.householderQr().solve(right), forces = dense.forces(until, q, v);
+  const Vector a = solve<Real>(jacobian, right), forces = dense.forces(until, q, v);
   const Real power = v.dot(dense.masses().cwiseProduct(a) - forces);
   for (Eigen::Index k = 2; k < count; k += 3) jacobian.col(k) /= dense.length;
   for (Eigen::Index k = 0; k < count; ++k) jacobian.row(k).normalize();
-  const double condition = double(jacobian.inverse().cwiseAbs().maxCoeff());
+  const double condition = double(ReferenceFactors<Real>(jacobian).inverse().cwiseAbs().maxCoeff());
   // Rounding of double in the places, multiplied by the condition once for each derivative.
   const double place = 1e-10 * condition, rate = place * condition, second = rate * condition;
   double speed = random.pace, most_power = std::abs(double(power));

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "references/dense.hpp"
 #include "stress/dense_mechanism.hpp"
 
 namespace catena::testing {
@@ -77,10 +78,7 @@ class RandomScene {
     for (Eigen::Index k = 2; k < jacobian.cols(); k += 3) jacobian.col(k) /= dense.length;
     for (Eigen::Index k = 0; k < jacobian.rows(); ++k) jacobian.row(k).normalize();
     if (jacobian.rows() == 0) return Matrix::Identity(dense.size(), dense.size());
-    Eigen::ColPivHouseholderQR<Matrix> qr(jacobian.transpose());
-    qr.setThreshold(1e-9L);
-    const Matrix all = qr.householderQ();
-    Matrix basis = all.rightCols(dense.size() - qr.rank());
+    Matrix basis = DenseRows<Real>(jacobian, 1e-9L).null_space();
     for (Eigen::Index k = 2; k < basis.rows(); k += 3) basis.row(k) /= dense.length;
     return basis;
   }

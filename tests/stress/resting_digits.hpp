@@ -3,6 +3,7 @@
 #pragma once
 
 #include "oracles/claimed_digits.hpp"
+#include "references/dense.hpp"
 #include "stress/random_scene.hpp"
 
 namespace catena::testing {
@@ -30,7 +31,7 @@ inline bool settle(const DenseMechanism& dense, const std::vector<Eigen::Index>&
   const Matrix jacobian = dense.jacobian(0, q);
   Matrix rows(r, n);
   for (Eigen::Index k = 0; k < r; ++k) rows.row(k) = jacobian.row(kept[static_cast<std::size_t>(k)]);
-  x << q, rows.transpose().fullPivHouseholderQr().solve(dense.forces(0, q, Vector::Zero(n)));
+  x << q, LeastSquares<Real>(rows.transpose()).solve(dense.forces(0, q, Vector::Zero(n)));
   const auto rest = [&](const Vector& at) { return balance(dense, kept, at.head(n), at.tail(r)); };
   // Angles of gears are continuous in the scene, and those of centres are not here.
   if (r > 0 && rest(x).tail(r).cwiseAbs().maxCoeff() > 1e-6L * Real(size)) return false;
@@ -44,7 +45,7 @@ inline bool settle(const DenseMechanism& dense, const std::vector<Eigen::Index>&
       behind[k] -= h;
       matrix.col(k) = (rest(ahead) - rest(behind)) / (2 * h);
     }
-    Vector step = matrix.fullPivLu().solve(rest(x));
+    Vector step = solve<Real>(matrix, rest(x));
     x -= step;
     before = last;
     last = 0;
