@@ -22,57 +22,11 @@
 namespace catena {
 namespace {
 
-// Steps of the parameter that are tried until its effect on K exceeds rounding.
-constexpr double steps[] = {1, 1e6, 1e12};
-constexpr double visible_effect = 1e-6, smallest_effect = 1e-12;
-constexpr double linear_part = 1e-9;
 // Constraints met to this, in length scales or rad, do not depend on the parameter.
 constexpr double kept_place = 1e-9;
 constexpr const char* moved_by_load =
     "the load moves the equilibrium: these are estimates of linear buckling theory; an analysis of type path finds the "
     "critical points on the way";
-
-// K0^-1 (K0 - K1) in the metric K0, K0 the factored K of the system's matrix.
-class BucklingOperator final : public SpectralOperator {
- public:
-  BucklingOperator(StaticSystem& system, const KktMatrix& loaded)
-      : system_(system), loaded_(loaded), weight_(length_weights(system)) {
-    for (double w : weight_) typical_.push_back(1 / std::sqrt(w));
-    given_.resize(weight_.size() + at(system.plan().rows));
-    solution_.resize(given_.size());
-    correction_.resize(given_.size());
-    product_.resize(weight_.size());
-  }
-
-  int columns() const override { return static_cast<int>(weight_.size()); }
-  std::span<const double> typical() const override { return typical_; }
-  void metric(std::span<const double> v, std::span<double> Gv) override { system_.matrix().multiply_stiffness(v, Gv); }
-  void invert(std::span<double> v) override {
-    std::fill(given_.begin(), given_.end(), 0.0);
-    const std::span<double> top{given_.data(), v.size()};
-    metric(v, top);
-    loaded_.multiply_stiffness(v, product_);
-    for (std::size_t c = 0; c < v.size(); ++c) top[c] -= product_[c];
-    solve_to_rounding(system_, weight_, given_, solution_, correction_);
-    std::copy_n(solution_.begin(), v.size(), v.begin());
-  }
-  void project(std::span<double> v) override { project_to_null_space(system_, v, solution_); }
-
- private:
-  StaticSystem& system_;
-  const KktMatrix& loaded_;
-  std::vector<double> weight_, typical_, given_, solution_, correction_, product_;
-};
-
-// Positions of the `count` largest in size; none while there are fewer.
-std::vector<int> largest_ones(std::span<const double> theta, int count) {
-  if (static_cast<int>(theta.size()) < count) return {};
-  std::vector<int> order(theta.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::abs(theta[at(a)]) > std::abs(theta[at(b)]); });
-  order.resize(at(count));
-  return order;
-}
 
 ModelAt required(ModelAt model_at) {
   if (!model_at)
@@ -82,9 +36,10 @@ ModelAt required(ModelAt model_at) {
 
 }  // namespace
 
-Buckling::Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options)
+Buckling::Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options,
+                   const PlanOptions& plan_options)
     : model_(std::move(model)),
-      plan_(Plan::make(catena::required(model_), with_gaps({}))),
+      plan_(Plan::make(catena::required(model_), with_gaps(plan_options))),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_),
@@ -141,34 +96,6 @@ StiffnessFloor Buckling::floor_under_load() {
   for (std::size_t c = 0; c < sizes.loads.size(); ++c)
     largest = std::max(largest, sizes.loads[c] / (c % 3 == 2 ? evaluator_.length_scale() : 1));
   return {system_, loaded_, thresholds::solved * largest};
-}
-
-Report Buckling::find_with(double step, int count, std::vector<Load>& loads, double& effect,
-                           const std::function<bool()>& go_on) {
-  loads.clear();
-  KktMatrix other(plan_, system_.radius());
-  if (Report outcome = stiffness_at(options_.present + step, other); !outcome.ok()) return outcome;
-  if (!path_.factorize(point_)) return not_stable();
-  if (const auto stability = path_.stability(); !stability || stability->negative > 0) return not_stable();
-  BucklingOperator op(system_, other);
-  Lanczos lanczos(op);
-  const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count); };
-  const int most = std::min(plan_->columns, Lanczos::most_vectors(count));
-  const bool settled = lanczos.run(wanted, most, go_on);
-  if (go_on && !go_on()) return {Status::cancelled, "stopped while loads were looked for", {}};
-  if (!settled && !lanczos.exhausted()) {
-    return {Status::not_converged,
-            fmt::format("{} loads did not settle within {} steps of Lanczos' method; ask for fewer", count, most),
-            {}};
-  }
-  effect = 0;
-  const int found = std::min(count, static_cast<int>(lanczos.theta().size()));
-  for (int k : largest_ones(lanczos.theta(), found)) {
-    const double theta = lanczos.theta()[at(k)];
-    effect = std::max(effect, std::abs(theta));
-    if (std::abs(theta) > smallest_effect * std::max(1.0, effect)) loads.push_back({step / theta, lanczos.vector(k)});
-  }
-  return {};
 }
 
 Report Buckling::take_place(Imbalance& left, BucklingReport& report) {
@@ -239,45 +166,6 @@ Report Buckling::find(BucklingReport& report, const std::function<bool()>& go_on
   if (options_.errors) find_errors(report);
   if (static_cast<int>(report.loads.size()) < options_.count) {
     report.warnings.push_back(fmt::format("there are only {} such values", report.loads.size()));
-  }
-  return {};
-}
-
-Report Buckling::find_by_lanczos(std::vector<Load>& loads, const std::function<bool()>& go_on) {
-  double effect = 0;
-  for (double step : steps) {
-    step *= std::max(std::abs(options_.present), 1.0);
-    if (Report pass = find_with(step, options_.count, loads, effect, go_on); !pass.ok()) return pass;
-    if (effect > visible_effect) break;
-  }
-  if (loads.empty()) return {};
-  // Again with the load itself as the step: rounding is least there, and a parameter that does not enter linearly is
-  // iterated. Linear ones take this one pass for all loads.
-  std::vector<Load> again;
-  for (std::size_t k = 0; k < loads.size(); ++k) {
-    bool linear = k == 0;
-    // A step equal to the load returns itself: solved for by the secant rule.
-    double step = loads[k].distance, step_before = 0, gap_before = 0;
-    for (int round = 0; round < thresholds::most_bisections; ++round) {
-      if (Report pass = find_with(step, static_cast<int>(loads.size()), again, effect, go_on); !pass.ok()) return pass;
-      if (k >= again.size()) break;
-      for (std::size_t other = k; other < std::min(again.size(), loads.size()); ++other) {
-        linear = linear && std::abs(again[other].distance - loads[other].distance) <=
-                               linear_part * std::abs(loads[other].distance);
-      }
-      if (linear) {
-        loads = again;
-        break;
-      }
-      loads[k] = again[k];
-      const double gap = again[k].distance - step;
-      if (std::abs(gap) <= refined_load * std::abs(step)) break;
-      const double next = round == 0 ? again[k].distance : step - gap * (step - step_before) / (gap - gap_before);
-      step_before = step;
-      gap_before = gap;
-      step = next;
-    }
-    if (linear) break;
   }
   return {};
 }

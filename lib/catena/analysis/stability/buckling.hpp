@@ -4,7 +4,8 @@
 //
 // Up to 500 degrees of freedom the eigenvalues of Z^T K(p) Z, taken in the metric of K0, are followed as functions of
 // p, whatever the load's dependence on it (buckling_dense.cpp). Larger ones: K0^-1 (K0 - K(p1)) v = theta v by Lanczos'
-// method, p = p0 + (p1 - p0) / theta: exact for loads that enter K linearly, iterated with p1 = p for others.
+// method, p = p0 + (p1 - p0) / theta, for loads that enter K linearly; for others the inertia of K(p) tells on which
+// stretch a load lies (buckling_large.cpp).
 // Multipliers belong to each value of the parameter, the configuration to the present one: where the load moves the
 // equilibrium, the results are estimates of linear buckling theory, and a warning is given; a path finds the true
 // critical points. The values nearest to the present one come first. Refused: an equilibrium that is not stable, a
@@ -57,7 +58,8 @@ class Buckling {
   static constexpr double refined_load = 1e-12;
 
   /// `model`: at options.present.
-  Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options);
+  Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options,
+           const PlanOptions& plan_options = {});
 
   const Plan& plan() const { return *plan_; }
   Evaluator& evaluator() { return evaluator_; }
@@ -74,6 +76,7 @@ class Buckling {
   class Spectrum;
   class Search;
   class CirculatorySearch;
+  class InertiaSearch;
   struct CriticalLoad {
     double distance = 0;  // p - p0
     bool flutter = false;
@@ -91,6 +94,10 @@ class Buckling {
   void check_gaps(BucklingReport& report);
   /// The `count` nearest loads by Lanczos' method, or by dense algebra.
   Report find_by_lanczos(std::vector<Load>& loads, const std::function<bool()>& go_on);
+  Report find_first_loads(bool within, std::vector<Load>& loads, double& step, const std::function<bool()>& go_on);
+  Report find_beside(double distance, double step, int count, std::vector<Load>& loads,
+                     const std::function<bool()>& go_on);
+  Report find_by_inertia(double step, std::vector<Load>& loads, const std::function<bool()>& go_on);
   Report find_by_dense(std::vector<Load>& loads, const std::function<bool()>& go_on);
   /// K at a value of the parameter to `matrix`, with the multipliers that belong to it.
   Report stiffness_at(double p, KktMatrix& matrix);

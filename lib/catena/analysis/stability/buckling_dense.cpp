@@ -26,9 +26,6 @@ namespace {
 constexpr double stiffness_rounding = thresholds::sum_rounding;
 // Deviation from a straight line that counts as rounding.
 constexpr double straight = 1e-10;
-// How far loads are looked for, in first steps: one beyond would be 1e8 times a value that already changes the
-// stiffness visibly.
-constexpr double farthest = 1e8;
 // Accuracy of a load, relative to its distance.
 constexpr double located = 1e-14;
 // Loads in closed form are accurate to 1e-16 of the steepest rate of change: used up to this multiple of its inverse.
@@ -253,7 +250,7 @@ class Buckling::Search {
       s.mu = {Eigen::VectorXd::Ones(freedoms_)};
     }
     Report outcome;
-    for_each_distance(step_, farthest, [&](double reach) {
+    for_each_distance(step_, farthest_load, [&](double reach) {
       if (go_on_ && !go_on_()) {
         outcome = cancelled();
         return false;

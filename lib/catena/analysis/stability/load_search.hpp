@@ -55,6 +55,9 @@ class FirstLoadStep {
   double step_, too_small_ = 0, too_large_ = std::numeric_limits<double>::infinity();
 };
 
+/// How far loads are looked for, in first steps: one beyond would be 1e8 times a value that already changes the
+/// stiffness visibly.
+inline constexpr double farthest_load = 1e8;
 /// Samples an octave of the distance from the present value, and within the first step.
 inline constexpr int samples_an_octave = 6;
 /// Calls f(distance) for growing distances up to `farthest` first steps, until it returns false.
