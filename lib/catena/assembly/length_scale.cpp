@@ -124,6 +124,25 @@ double size_of_gaps(const Model& model) {
   return largest;
 }
 
+// The largest length that a constraint keeps, or a force element has, as a spring without force; 0 if none.
+double size_of_elements(const Model& model) {
+  double largest = 0;
+  const auto take = [&](double length) {
+    if (std::isfinite(length)) largest = std::max(largest, std::abs(length));
+  };
+  for_each_list(model.constraints, [&](const auto& list, int) {
+    if constexpr (HasSquaredValue<ElementOf<decltype(list)>>) {
+      for (const auto& entry : list) take(entry.values[0].function < 0 ? entry.values[0].constant : 0);
+    }
+  });
+  for_each_list(model.forces, [&](const auto& list, int) {
+    for (const auto& entry : list)
+      std::apply([&](const auto&... field) { (take(dimension(entry.element, field)), ...); },
+                 ElementOf<decltype(list)>::fields());
+  });
+  return largest;
+}
+
 // Where the weight stops or turns what moves: v^2 / g; 0 where nothing moves, or has weight.
 double way_against_weight(const Model& model) {
   double fastest = 0;
@@ -147,7 +166,8 @@ double mean_gyration(const Model& model) {
 }  // namespace
 
 double given_length(const Model& model) {
-  for (const auto length : {extent, mean_force_arm, mean_curve_size, mean_gyration, size_of_gaps, way_against_weight}) {
+  for (const auto length :
+       {extent, mean_force_arm, mean_curve_size, mean_gyration, size_of_gaps, size_of_elements, way_against_weight}) {
     if (const double found = length(model); found != 0) return found;
   }
   return 0;
@@ -156,6 +176,13 @@ double given_length(const Model& model) {
 double length_without_joints(const Model& model) {
   const double found = given_length(model);
   return found != 0 ? found : 1;
+}
+
+bool lacks_length(const Equations& equations) {
+  if (given_length(equations.model()) != 0) return false;
+  double arms = 0;
+  equations.attachment_radii(&arms);
+  return arms == 0;
 }
 
 // Points of constraints; where all points of a body are at its centroid, those of force elements; else the mean of what

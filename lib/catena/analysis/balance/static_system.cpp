@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "catena/analysis/balance/force_sizes.hpp"
+#include "catena/analysis/balance/way_of_forces.hpp"
+#include "catena/assembly/length_scale.hpp"
 
 namespace catena {
 namespace {
@@ -34,6 +36,7 @@ StaticSystem::StaticSystem(Evaluator& evaluator)
   jacobian_.resize(at(plan_.trash_slot()) + 1);
   evaluator_.start_jacobian(jacobian_);
   solution_.resize(at(plan_.columns + plan_.rows));
+  lacks_length_ = lacks_length(evaluator);
   if (!has_gaps()) return;
   gaps_.is.assign(at(plan_.rows), 0);
   for (int r : plan_.gap_rows) gaps_.is[at(r)] = 1;
@@ -71,10 +74,26 @@ void StaticSystem::all_gaps(std::vector<double>& out) {
   for (int r : plan_.gap_rows) out.push_back(gaps_.all[at(r)]);
 }
 
+// The forces give a length where the scene does not, once and for all that is compared later.
+void StaticSystem::take_length() {
+  lacks_length_ = false;
+  const std::vector<CurvePlace> places = evaluator_.curve_places();
+  const double way = way_of_forces(evaluator_);
+  evaluator_.go_to_curve_places(places);
+  if (way == 0) return;
+  found_length_ = way;
+  take_over_model();
+}
+
 void StaticSystem::take_over_model() {
   radius_ = evaluator_.attachment_radii();
-  matrix_.set_radius(radius_);
   length_ = evaluator_.length_scale();
+  if (found_length_ > 0) {
+    // Without arms all radii are the length scale.
+    for (double& r : radius_) r *= found_length_ / length_;
+    length_ = found_length_;
+  }
+  matrix_.set_radius(radius_);
   scaling_ = Scaling(plan_, length_);
   springs_.take_over_model(evaluator_);
   load_ = total_load_ = 0;
@@ -83,6 +102,7 @@ void StaticSystem::take_over_model() {
 }
 
 void StaticSystem::move_to(std::span<const double> q) {
+  if (lacks_length_) take_length();
   evaluator_.set_configuration(q);
   evaluator_.applied_forces(rest_, loads_);
   for (int c = 0; c < plan_.columns; ++c) gradient_[at(c)] = -loads_[at(plan_.coordinate[at(c)])];

@@ -122,6 +122,8 @@ class StaticSystem {
   std::span<const double> radius() const { return radius_; }
 
  private:
+  void take_length();
+
   struct ForceSize {
     double largest = 0, sum = 0;
   };
@@ -134,6 +136,8 @@ class StaticSystem {
   KktMatrix matrix_;
   int linear_ = -1;  // -1: not asked yet
   bool has_factors_ = false;
+  bool lacks_length_ = false;  // and none has been found yet
+  double found_length_ = 0;    // where the scene gives none
   double length_, extent_ = 1, force_ = 1, load_ = 0, total_load_ = 0;
   Scaling scaling_;
   std::vector<double> rest_, loads_;  // zero velocities, Q; all coordinates

@@ -20,14 +20,6 @@ namespace {
 // the 1st, 2nd, 4th, 8th and 16th are looked at, too: a swing takes thirty, and at its ends nothing is in motion.
 constexpr std::int64_t steps_between_checks = 32;
 
-// Whether nothing in the scene gives a length: neither joints, nor bodies, nor what acts on them.
-bool lacks_length(const Evaluator& evaluator) {
-  if (evaluator.plan().rows > 0 || given_length(evaluator.model()) != 0) return false;
-  double arms = 0;
-  evaluator.attachment_radii(&arms);
-  return arms == 0;
-}
-
 }  // namespace
 
 AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
@@ -83,7 +75,7 @@ Report Dynamics::start() {
   if ((work_.account || conserves) && options_.step == 0) work_.balance.emplace();
   row_.driver_work.assign(work_.account ? model_->elements.size() : 0, 0.0);
   motion_.emplace(equations_, work_.account ? &*work_.account : nullptr);
-  if (lacks_length(evaluator_)) {
+  if (plan_->rows == 0 && lacks_length(evaluator_)) {
     const double way = way_of_motion(equations_, t_, q_, qd_, run_.grid.last());
     if (way > 0) motion_->set_length_scale(way);
   }

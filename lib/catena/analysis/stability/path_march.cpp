@@ -103,7 +103,7 @@ bool Path::March::write(const PathPoint& x) {
                           .t = path_.t_,
                           .q = system_.q(),
                           .lambda = x.lambda,
-                          .residual = path_.system_.phi_norm() * path_.evaluator_.length_scale()};
+                          .residual = path_.system_.phi_norm() * path_.system_.length()};
   return observe_(x.p, snapshot);
 }
 

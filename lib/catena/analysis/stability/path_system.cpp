@@ -5,6 +5,7 @@
 
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/statics/solvers/static_settling.hpp"
+#include "catena/assembly/length_scale.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -22,10 +23,16 @@ constexpr double astray = 3;
 // third derivative make errors of one size.
 constexpr double difference = 1e-5;
 
+// A system without a length of its own takes one where it is placed first.
+StaticSystem& with_length(StaticSystem& system) {
+  if (lacks_length(system.evaluator())) system.move_to(system.evaluator().given_configuration());
+  return system;
+}
+
 }  // namespace
 
 PathSystem::PathSystem(StaticSystem& system, ModelAt model_at, double p, double scale)
-    : system_(system),
+    : system_(with_length(system)),
       evaluator_(system.evaluator()),
       plan_(system.plan()),
       model_at_(std::move(model_at)),

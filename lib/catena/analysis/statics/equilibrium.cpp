@@ -185,7 +185,7 @@ bool Equilibrium::send_row(const Needs& needs, RowObserver& observer, Report& re
                           .t = t_,
                           .q = q_,
                           .lambda = needs.multipliers ? std::span<const double>(lambda_) : std::span<const double>{},
-                          .residual = system_.phi_norm() * evaluator_.length_scale()};
+                          .residual = system_.phi_norm() * system_.length()};
   if (observer.observe(snapshot)) return true;
   report.status = Status::cancelled;
   report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t_);
