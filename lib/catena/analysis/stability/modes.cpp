@@ -17,7 +17,6 @@
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/modes_search.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
-#include "catena/analysis/statics/static_explanation.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -183,6 +182,10 @@ Report Modes::take_place(std::span<double> lambda, Imbalance& left, ModesReport&
   ActiveSet set;
   if (Report closed = close_gaps_at(system_, q_, lambda, set, left); !closed.ok()) return closed;
   report.active = names_of_closed(evaluator_, set);
+  if (!evaluator_.conservative()) {
+    for (std::string& remark : remarks_on(evaluator_, set)) report.warnings.push_back(std::move(remark));
+    return {};
+  }
   if (const std::string weak = names_of_weak(evaluator_, set); !weak.empty())
     report.warnings.push_back(taken_as_open(weak));
   soften(set, lambda);
@@ -203,7 +206,6 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
     return report;
   };
   const bool circulatory = !evaluator_.conservative();
-  if (circulatory && system_.has_gaps()) return end(refuse_gaps_without_energy(system_));
   if (Report functions = check_time_functions(*model_, {t_, t_}); !functions.ok()) return end(std::move(functions));
   evaluator_.set_time(t_);
   std::vector<double> mass(at(plan_->columns)), lambda(at(plan_->rows));

@@ -14,7 +14,8 @@
 //
 //   Re (v e^(growth t + i omega t)),   (growth + i omega)^2 = -(omega2 - i b)      shapes: Re v, then Im v
 //
-// Refused beside these: more than 500 degrees of freedom, one-sided elements.
+// Refused beside these: more than 500 degrees of freedom. A closed element with a stiffness k is rigid there, with a
+// warning.
 //
 // One-sided elements that are closed with a force hold as equations, the others not at all (active_set_at.hpp); those
 // that touch without force are named. A closed one with a stiffness k is a spring instead,

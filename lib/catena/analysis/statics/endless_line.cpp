@@ -2,24 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "catena/analysis/balance/descent_rules.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
+#include "catena/analysis/statics/solvers/endless_fall.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-// Extents of the scene: anything that bends or stretches on the way shows there, and the rounding of the direction,
-// which grows with the square of the way, does not yet.
-constexpr double far = 1e3;
-// What the energy's fall may differ from F s by, of itself: its rounding there is 1e-12, and any spring that is
-// stretched on the way is larger.
-constexpr double bend = 1e-6;
 
 // The part of the unbalanced forces along motions without stiffness, over columns.
 std::vector<double> driven_direction(StaticSystem& system, std::span<const double> lambda) {
@@ -54,18 +46,8 @@ std::optional<EndlessLine> find_endless_line(StaticSystem& system, std::span<con
     line.direction[c] /= largest;
     line.force -= line.direction[c] * system.gradient()[c];
   }
-  const double energy = system.energy(), reach = far * system.extent();
-  bool endless = line.force > thresholds::no_force * system.force_scale(lambda);
-  std::vector<double> there;
-  for (const double s : {reach / 2, reach}) {
-    if (!endless) break;
-    there.assign(q.begin(), q.end());
-    system.advance(there, line.direction, s, std::numeric_limits<double>::infinity());
-    system.move_to(there);
-    endless = system.phi_norm() <= std::max(descent::restored, 10 * system.rounding_change()) &&
-              std::abs(energy - system.energy() - line.force * s) <= bend * line.force * s;
-  }
-  system.move_to(q);
+  const bool endless =
+      line.force > thresholds::no_force * system.force_scale(lambda) && falls_for_ever(system, q, line.direction);
   return endless ? std::optional(line) : std::nullopt;
 }
 

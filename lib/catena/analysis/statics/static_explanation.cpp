@@ -27,14 +27,6 @@ std::string body_of(const Evaluator& evaluator, int column) {
   return std::string(evaluator.model().body_name(body));
 }
 
-// Names the gaps of which rounding decides whether they are closed.
-void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
-  const std::string names = names_of_weak(evaluator, result.gaps);
-  if (names.empty()) return;
-  result.report.warnings.push_back(
-      fmt::format("closed gaps whose force cannot be distinguished from rounding: {}", names));
-}
-
 // Describes why the last point is no equilibrium, from its accuracy and certificate.
 void describe_point(StaticSystem& system, const StaticAccuracy& a, double tolerance, const Certificate& c,
                     Report& report) {
@@ -60,29 +52,6 @@ void describe_point(StaticSystem& system, const StaticAccuracy& a, double tolera
                   "makes {:.3g} N of them; take a joint or a coupler instead, or a softer spring",
                   system.matrix().largest_stiffness(), a.rounding)
             : "; likely cause: a start far off, or an energy without a minimum nearby";
-}
-
-// The energy falls without end: names the body that has gone farthest from `start`.
-Report explain_unbounded(StaticSystem& system, const std::vector<double>& start) {
-  const Plan& plan = system.plan();
-  const std::span<const Frame<double>> frames = system.evaluator().frames();
-  int farthest = 0;
-  double most = -1;
-  for (int c = 0; c < plan.columns; ++c) {
-    const int coordinate = plan.coordinate[at(c)];
-    const Frame<double>& f = frames[at(coordinate / 3)];
-    const double now = coordinate % 3 == 0 ? f.x : coordinate % 3 == 1 ? f.y : f.phi;
-    const double gone = std::abs(now - start[at(coordinate)]) / (coordinate % 3 == 2 ? 1 : system.length());
-    if (gone > most) {
-      most = gone;
-      farthest = c;
-    }
-  }
-  return {
-      Status::unbounded,
-      fmt::format("the energy has no minimum: body \"{}\" {} without end; likely cause: nothing holds it",
-                  body_of(system.evaluator(), farthest), plan.coordinate[at(farthest)] % 3 == 2 ? "turns" : "moves"),
-      {}};
 }
 
 // A search that creeps along a line on which the energy falls without end: names the body that moves most on it.
@@ -126,11 +95,33 @@ std::optional<Report> find_overflow(StaticSystem& system, std::span<double> lamb
   return {};
 }
 
+Report explain_unbounded(StaticSystem& system, const std::vector<double>& start) {
+  const Plan& plan = system.plan();
+  const std::span<const Frame<double>> frames = system.evaluator().frames();
+  int farthest = 0;
+  double most = -1;
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    const Frame<double>& f = frames[at(coordinate / 3)];
+    const double now = coordinate % 3 == 0 ? f.x : coordinate % 3 == 1 ? f.y : f.phi;
+    const double gone = std::abs(now - start[at(coordinate)]) / (coordinate % 3 == 2 ? 1 : system.length());
+    if (gone > most) {
+      most = gone;
+      farthest = c;
+    }
+  }
+  return {
+      Status::unbounded,
+      fmt::format("the energy has no minimum: body \"{}\" {} without end; likely cause: nothing holds it",
+                  body_of(system.evaluator(), farthest), plan.coordinate[at(farthest)] % 3 == 2 ? "turns" : "moves"),
+      {}};
+}
+
 Report refuse_gaps_without_energy(StaticSystem& system) {
   const Evaluator& evaluator = system.evaluator();
   const int element = system.plan().row_element[at(system.plan().gap_rows.front())];
   return {Status::refused,
-          fmt::format("{}, and one-sided elements such as {} \"{}\" are treated by minimising one",
+          fmt::format("{}, and this analysis follows one-sided elements such as {} \"{}\" only where all have one",
                       forces_without_energy(evaluator.model()), evaluator.model().element_type(element),
                       evaluator.model().element_name(element)),
           {}};
@@ -169,6 +160,13 @@ Report explain_failure(StaticSystem& system, const StaticOutcome& outcome, const
                     evaluator.model().element_type(element), evaluator.model().element_name(element), -*worst);
   }
   return report;
+}
+
+void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
+  const std::string names = names_of_weak(evaluator, result.gaps);
+  if (names.empty()) return;
+  result.report.warnings.push_back(
+      fmt::format("closed gaps whose force cannot be distinguished from rounding: {}", names));
 }
 
 void warn_of_rounding(const StaticAccuracy& a, Report& report) {

@@ -13,6 +13,8 @@ namespace catena {
 
 /// Refuses forces and stiffnesses at the system's configuration whose products overflow.
 std::optional<Report> find_overflow(StaticSystem& system, std::span<double> lambda);
+/// The energy falls without end: names the body that has gone farthest from `start`, or turned most.
+Report explain_unbounded(StaticSystem& system, const std::vector<double>& start);
 /// Refuses one-sided elements beside forces that have no energy; the system has gaps.
 Report refuse_gaps_without_energy(StaticSystem& system);
 
@@ -24,6 +26,8 @@ Report explain_failure(StaticSystem& system, const StaticOutcome& outcome, const
 /// Adds warnings: of gaps that touch without a force, of forces that balance only as well as rounding allows, and of
 /// neutral and negative modes.
 void add_warnings(StaticSystem& system, const StaticAccuracy& accuracy, StaticResult& result);
+/// Names the gaps of which rounding decides whether they are closed.
+void name_weak_gaps(const Evaluator& evaluator, StaticResult& result);
 /// Warns where forces balance as well as rounding allows, but not to the tolerance.
 void warn_of_rounding(const StaticAccuracy& accuracy, Report& report);
 

@@ -40,9 +40,7 @@ void take_out_all(StaticSystem& system, std::vector<std::vector<double>> shapes,
 Certificate StaticJudge::certify_point(const std::vector<double>& q, std::span<const double> lambda,
                                        const ActiveSet& gaps) {
   if (!system_.has_gaps()) return certify(system_, lambda);
-  std::vector<char> strong = gaps.closed;
-  for (std::size_t k = 0; k < strong.size(); ++k) strong[k] = strong[k] && !gaps.weak[k];
-  system_.close_gaps(strong);
+  system_.close_gaps(strong_of(gaps));
   system_.move_to(q);
   const Certificate certificate = certify(system_, lambda);
   system_.close_gaps(gaps.closed);

@@ -1,6 +1,7 @@
 #include "catena/analysis/statics/static_search.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "catena/analysis/balance/static_turns.hpp"
 #include "catena/analysis/pose/whole_turns.hpp"
@@ -53,9 +54,15 @@ StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<doub
   StaticOutcome outcome;
   double push = first_push;
   bool accepted = false, pushed = false;
+  std::optional<Report> turning;
   for (int trial = 0; trial < most_static_trials; ++trial) {
-    outcome = trials.run(q, lambda, options_.warm && trial == 0, attempts.present().way, result);
+    // Newton's steps with gaps may lead back to the point that was left; a damped motion does not.
+    const bool settles = pushed && system_.has_gaps() && options_.solver == StaticSolver::automatic;
+    const StaticWay way = settles ? StaticWay::settling : attempts.present().way;
+    outcome = trials.run(q, lambda, options_.warm && trial == 0, way, result);
     if (outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled) break;
+    // Another place may hold it.
+    if (outcome.end == StaticEnd::turning) turning = explain_unbounded(system_, start);
     if (outcome.converged()) {
       result.certificate = judge_.certify_point(q, lambda, result.gaps);
       const Certificate& c = result.certificate;
@@ -76,7 +83,8 @@ StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<doub
   if (!outcome.converged()) judge_.weigh(lambda);
   result.residual = judge_.accuracy().residual;
   if (!accepted) {
-    result.report = explain(outcome, start, result);
+    const bool stopped = outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled;
+    result.report = turning && !stopped ? *turning : explain(outcome, start, result);
     return result;
   }
   drop_whole_turns(system_, start, q);
@@ -92,11 +100,7 @@ StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<doub
 StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lambda) {
   StaticResult result;
   if (!options_.warm) move_whole_turns(system_.evaluator(), q);
-  if (!system_.evaluator().conservative()) {
-    if (!system_.has_gaps()) return find_without_energy(q, lambda);
-    result.report = refuse_gaps_without_energy(system_);
-    return result;
-  }
+  if (!system_.evaluator().conservative()) return find_without_energy(q, lambda);
   system_.move_to(q);
   if (std::optional<Report> overflow = find_overflow(system_, lambda)) {
     result.report = *overflow;

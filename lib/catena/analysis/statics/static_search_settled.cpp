@@ -23,13 +23,25 @@ constexpr int usual_steps_aside = 200, most_settling_steps = 1000;
 
 StaticOutcome StaticSearch::settle(std::vector<double>& q, std::vector<double>& lambda, int most_steps,
                                    StaticResult& result) {
-  StaticOutcome outcome =
-      solve_by_settling(system_, q, lambda, {.max_iterations = most_steps, .tolerance = options_.tolerance});
+  StaticOutcome outcome = solve_by_settling(system_, q, lambda, result.gaps,
+                                            {.max_iterations = most_steps, .tolerance = options_.tolerance});
   result.iterations += outcome.iterations;
   if (outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled) return outcome;
   judge_.weigh(lambda);
   if (outcome.converged() && !judge_.accuracy().holds()) outcome.end = StaticEnd::slow;
   return outcome;
+}
+
+// Gaps that are closed without force may open: stability is judged as if they were.
+StaticStability StaticSearch::stability_at(const std::vector<double>& q, std::span<const double> lambda,
+                                           const ActiveSet& gaps) {
+  if (!system_.has_gaps()) return judge_stability(system_, lambda);
+  system_.close_gaps(strong_of(gaps));
+  system_.move_to(q);
+  StaticStability stability = judge_stability(system_, lambda);
+  system_.close_gaps(gaps.closed);
+  system_.move_to(q);
+  return stability;
 }
 
 StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vector<double>& lambda) {
@@ -50,10 +62,11 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
     result.report = explain(outcome, start, result);
     return result;
   }
-  result.stability = judge_stability(system_, lambda);
+  result.stability = stability_at(q, lambda, result.gaps);
   const StaticStability& s = *result.stability;
   const bool left = !options_.stationary && s.judged && s.motions.negative > 0 && leave_divergence(q, lambda, result);
   warn_of_rounding(judge_.accuracy(), result.report);
+  name_weak_gaps(system_.evaluator(), result);
   drop_whole_turns(system_, start, q);
   describe_stability(lambda, result);
   if (left)
@@ -65,19 +78,21 @@ bool StaticSearch::leave_divergence(std::vector<double>& q, std::vector<double>&
   KeptPlace before;
   before.keep(system_, q, lambda);
   const double residual = result.residual;
+  const ActiveSet gaps = result.gaps;
   const auto& modes = result.stability->motions.modes;
   const auto lowest = std::find_if(modes.begin(), modes.end(), [](const CirculatoryMode& m) { return !m.is_pair(); });
   const std::vector<double> shape = lowest->shape;
   const double largest = system_.change_norm(shape);
   for (const double size : pushes_aside) {
     for (const double side : {1.0, -1.0}) {
+      system_.close_gaps(gaps.closed);
       before.take_back(system_, q, lambda);
       system_.advance(q, shape, side * size / largest, 10);
       if (!restore_constraints(system_, q)) continue;
       const StaticOutcome outcome = settle(q, lambda, usual_steps_aside, result);
       if (outcome.end == StaticEnd::cancelled) break;
       if (!outcome.converged()) continue;
-      StaticStability beside = judge_stability(system_, lambda);
+      StaticStability beside = stability_at(q, lambda, result.gaps);
       if (!beside.stable) continue;
       result.stability = std::move(beside);
       result.residual = outcome.residual;
@@ -85,6 +100,8 @@ bool StaticSearch::leave_divergence(std::vector<double>& q, std::vector<double>&
     }
   }
   result.residual = residual;
+  result.gaps = gaps;
+  system_.close_gaps(gaps.closed);
   before.take_back(system_, q, lambda);
   judge_.weigh(lambda);
   return false;

@@ -5,6 +5,7 @@
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/thresholds.hpp"
+#include "catena/analysis/statics/solvers/endless_fall.hpp"
 #include "catena/analysis/statics/solvers/static_descent.hpp"
 #include "catena/analysis/statics/solvers/static_ipopt.hpp"
 #include "catena/analysis/statics/solvers/static_nlopt.hpp"
@@ -108,11 +109,23 @@ StaticOutcome StaticTrial::optimise_by_nlopt(std::vector<double>& q, std::vector
   return outcome;
 }
 
+// Minimisers give an energy up that has fallen far: whether it falls for ever is another question.
 StaticOutcome StaticTrial::optimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way) {
-  if (way == StaticWay::nlopt) return optimise_by_nlopt(q, lambda);
-  return solve_by_ipopt(
-      system_, q, lambda,
-      {.tolerance = std::max(options_.tolerance, finest_barrier), .warm = warm, .verbose = options_.verbose});
+  const std::vector<double> start = q;
+  StaticOutcome outcome =
+      way == StaticWay::nlopt
+          ? optimise_by_nlopt(q, lambda)
+          : solve_by_ipopt(
+                system_, q, lambda,
+                {.tolerance = std::max(options_.tolerance, finest_barrier), .warm = warm, .verbose = options_.verbose});
+  if (outcome.end != StaticEnd::unbounded) return outcome;
+  std::vector<double> way_made(at(system_.plan().columns));
+  for (std::size_t c = 0; c < way_made.size(); ++c) {
+    const std::size_t k = at(system_.plan().coordinate[c]);
+    way_made[c] = q[k] - start[k];
+  }
+  if (!falls_for_ever(system_, q, way_made)) outcome.end = StaticEnd::diverged;
+  return outcome;
 }
 
 StaticOutcome StaticTrial::run_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way,
@@ -124,6 +137,12 @@ StaticOutcome StaticTrial::run_with_gaps(std::vector<double>& q, std::vector<dou
     system_.use_gaps();
     system_.move_to(q);
     outcome = optimise(q, lambda, warm, way);
+    result.iterations += outcome.iterations;
+    return outcome.converged() ? finish_with_gaps(system_, q, lambda, result.gaps, exact) : outcome;
+  }
+  if (way == StaticWay::settling) {
+    system_.move_to(q);
+    outcome = solve_by_settling(system_, q, lambda, result.gaps, {.tolerance = options_.tolerance});
     result.iterations += outcome.iterations;
     return outcome.converged() ? finish_with_gaps(system_, q, lambda, result.gaps, exact) : outcome;
   }

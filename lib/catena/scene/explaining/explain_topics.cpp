@@ -98,7 +98,7 @@ Example
   Such a force, and a state_law, is not minus the gradient of an energy: its stiffness is unsymmetric. equilibrium, modes,
   buckling and path judge by M x'' + K x = 0: stable where every omega2 is real and above zero. A negative omega2 is
   divergence; a pair of complex ones is flutter, an oscillation that grows. Masses decide about flutter; damping is
-  left out. Refused: more than 500 degrees of freedom, one-sided elements beside such forces.
+  left out. Refused: more than 500 degrees of freedom; in buckling and path one-sided elements beside such forces.
 
   modes        a pair takes two rows: omega2 (its real part) and omega (its frequency), then omega2_imaginary and growth,
                1/s, the motion that grows first

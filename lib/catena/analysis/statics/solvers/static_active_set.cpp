@@ -9,12 +9,6 @@
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Gaps change all at once while that leads to new sets, up to the second number; then one by one, up to the first.
-constexpr int most_sets = 200, most_sets_at_once = 15;
-
-}  // namespace
 
 double typical_force(StaticSystem& system) {
   if (system.dead_load() > 0) return system.dead_load();
@@ -28,6 +22,12 @@ std::vector<double> gap_values(StaticSystem& system) {
   return values;
 }
 
+std::vector<char> strong_of(const ActiveSet& set) {
+  std::vector<char> strong = set.closed;
+  for (std::size_t k = 0; k < strong.size(); ++k) strong[k] = strong[k] && !set.weak[k];
+  return strong;
+}
+
 std::vector<double> gap_faults(StaticSystem& system, std::span<const double> lambda, std::span<const char> closed) {
   const double force = std::max(system.force_scale(lambda), typical_force(system));
   std::vector<double> fault = gap_values(system);
@@ -37,6 +37,17 @@ std::vector<double> gap_faults(StaticSystem& system, std::span<const double> lam
     fault[k] = closed[k] ? lambda[at(row)] / u.force : -fault[k] / u.gap;
   }
   return fault;
+}
+
+void mark_weak(StaticSystem& system, std::span<const double> lambda, ActiveSet& set) {
+  const double force = std::max(system.force_scale(lambda), typical_force(system));
+  const std::vector<double> gap = gap_values(system);
+  set.weak.assign(gap.size(), 0);
+  for (std::size_t k = 0; k < gap.size(); ++k) {
+    const GapUnits u = units_of(system, system.plan().gap_rows[k], {system.length(), force});
+    const double p = -lambda[at(system.plan().gap_rows[k])];
+    set.weak[k] = set.closed[k] ? p <= thresholds::no_force * u.force : gap[k] <= thresholds::closed_gap * u.gap;
+  }
 }
 
 StaticOutcome finish_with_gaps(StaticSystem& system, std::span<double> q, std::span<double> lambda, ActiveSet& set,
@@ -79,14 +90,7 @@ StaticOutcome finish_with_gaps(StaticSystem& system, std::span<double> q, std::s
     outcome.end = StaticEnd::slow;
   }
   if (!outcome.converged()) return outcome;
-  const double force = std::max(system.force_scale(lambda), typical_force(system));
-  const std::vector<double> gap = gap_values(system);
-  set.weak.assign(gaps, 0);
-  for (std::size_t k = 0; k < gaps; ++k) {
-    const GapUnits u = units_of(system, plan.gap_rows[k], {system.length(), force});
-    const double p = -lambda[at(plan.gap_rows[k])];
-    set.weak[k] = set.closed[k] ? p <= thresholds::no_force * u.force : gap[k] <= thresholds::closed_gap * u.gap;
-  }
+  mark_weak(system, lambda, set);
   return outcome;
 }
 

@@ -3,19 +3,24 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "catena/analysis/balance/descent_rules.hpp"
+#include "catena/analysis/balance/static_turns.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
+#include "catena/analysis/statics/solvers/endless_fall.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// A mechanism that has turned this many radians downhill is not held.
-constexpr double lost_turns = 1e4;
+// Extents beyond which a search asks whether the energy falls along its way for ever: most searches stay below.
+constexpr double far_away = 1e5;
+// Rad: after so many whole turns a search asks whether they have led to the place where it was.
+constexpr double several_turns = 6 * std::numbers::pi;
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
@@ -91,6 +96,8 @@ class Descent {
   void finish();
   bool is_neutral(double shift, double slope);
   bool search_along(double shift, double slope);
+  bool goes_on();
+  bool is_turned();
 
   StaticSystem& system_;
   std::span<double> q_, lambda_;
@@ -100,6 +107,7 @@ class Descent {
   std::vector<double> residual_, gradient_, change_, product_, trial_, next_lambda_;
   std::vector<CurvePlace> curve_places_;
   bool balanced_ = false;  // where the step begins
+  bool is_far_ = false;    // from the start
   double extent_ = 0, load_ = 0;
   double reach_ = 1;       // the limit on steps, in those of the first
   double last_shift_ = 0;  // of K, in the step before
@@ -144,16 +152,48 @@ StaticOutcome Descent::run() {
   }
   iterate(system_, options_.max_iterations, outcome_, [this] {
     if (!step()) return false;
+    for (std::size_t c = 0; c < change_.size(); ++c) {
+      const std::size_t k = at(system_.plan().coordinate[c]);
+      change_[c] = trial_[k] - q_[k];
+    }
     std::copy(trial_.begin(), trial_.end(), q_.begin());
     std::copy(next_lambda_.begin(), next_lambda_.end(), lambda_.begin());
     measure();
     tell();
-    const Travel travel = travel_between(start_, q_);
-    if (!travel.is_lost(extent_) && travel.turn <= lost_turns) return true;
-    outcome_.end = StaticEnd::unbounded;
-    return false;
+    return goes_on();
   });
   return outcome_;
+}
+
+// False where the way that the last step made in change_ does not end.
+bool Descent::goes_on() {
+  const Travel travel = travel_between(start_, q_);
+  if (travel.turn > several_turns && is_turned()) {
+    outcome_.end = StaticEnd::turning;
+    return false;
+  }
+  is_far_ = std::max(travel.length / extent_, travel.turn) > far_away;
+  if (!is_far_) return true;
+  if (!travel.is_lost(extent_) && !falls_for_ever(system_, q_, change_)) return true;
+  outcome_.end = StaticEnd::unbounded;
+  return false;
+}
+
+// Whether bodies have turned by whole turns that no element counts: the forces are those of the place without these
+// turns, where the energy is higher.
+bool Descent::is_turned() {
+  std::vector<double> before(q_.begin(), q_.end());
+  curve_places_ = system_.evaluator().curve_places();
+  const double energy = system_.energy();
+  if (!drop_whole_turns(system_.plan(), start_, before)) return false;
+  gradient_.assign(system_.gradient().begin(), system_.gradient().end());
+  system_.move_to(before);
+  for (std::size_t c = 0; c < gradient_.size(); ++c) gradient_[c] -= system_.gradient()[c];
+  const double work = system_.energy() - energy, force = system_.force_size();
+  const bool same = system_.force_norm(gradient_) <= thresholds::no_force * force;
+  system_.evaluator().go_to_curve_places(curve_places_);
+  system_.move_to(q_);
+  return same && work > thresholds::no_force * force * extent_;
 }
 
 // One step downhill, to trial_: with the exact K, stiffened until its inertia is that of a minimum and a step can be
@@ -168,7 +208,8 @@ bool Descent::step() {
     const double used = shift;
     if (shift == 0) {
       stiffest = system_.matrix().largest_stiffness();
-      loads = system_.force_size() / extent_;
+      // Far away a step is long that changes the place by a part of itself.
+      loads = system_.force_size() / (is_far_ ? system_.extent() : extent_);
       shift = std::max({descent::first_of_rounding * stiffest, descent::first_of_force * loads,
                         descent::part_of_last * last_shift_});
     } else {

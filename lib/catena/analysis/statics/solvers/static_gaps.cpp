@@ -121,6 +121,7 @@ class SmoothingSearch {
   // The last point that was solved, and the factor of t from there.
   KeptPlace before_;
   double t_before_ = 0, cooling_ = first_cooling;
+  double reach_ = 1;  // the limit on steps, in sizes
   bool near_ = false, finished_ = false;
   int steps_ = 0;  // for the present t
 };
@@ -160,8 +161,10 @@ bool SmoothingSearch::linearise() {
 double SmoothingSearch::step() {
   const StaticStep step = system_.solve(force_, gap_, near_ ? 1e-13 : 1e-9);
   const double change = system_.change_norm(step.change);
-  // Where almost nothing resists only the direction of a step is useful: none is longer than the mechanism.
-  const double factor = std::isfinite(change) ? std::min(1.0, size_ / (system_.length() * change)) : 0.0;
+  // Where almost nothing resists only the direction of a step is useful: none is longer than the mechanism, but for
+  // those on a long way.
+  const double factor = std::isfinite(change) ? std::min(1.0, reach_ * size_ / (system_.length() * change)) : 0.0;
+  reach_ = factor < 1 ? 2 * reach_ : 1;
   if (factor > 0) {
     system_.foresee(step.change, factor, newton_turn);
     system_.advance(q_, step.change, factor, newton_turn);

@@ -30,6 +30,9 @@ struct ActiveSet {
   int changes = 0;         ///< sets that were tried beside the first
 };
 
+/// Those that are closed and not weak.
+std::vector<char> strong_of(const ActiveSet& set);
+
 struct StaticGapOptions {
   int max_iterations = 200;  ///< of the smoothed equations
   int first_steps = 80;      ///< of them, until the first smoothing has arrived

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "catena/analysis/balance/static_tangent.hpp"
+#include "catena/analysis/statics/solvers/static_active_set.hpp"
+#include "catena/analysis/statics/solvers/static_settling_gaps.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -21,11 +23,13 @@ constexpr double largest_damping = 1e12, least_damping = 1e-14;
 
 class Settling {
  public:
-  Settling(StaticSystem& system, std::span<double> q, std::span<double> lambda, const StaticSettlingOptions& options)
+  Settling(StaticSystem& system, std::span<double> q, std::span<double> lambda, const StaticSettlingOptions& options,
+           ActiveSet& set)
       : system_(system),
         q_(q),
         lambda_(lambda),
         options_(options),
+        set_(set),
         start_(q.begin(), q.end()),
         x_(at(system.plan().columns) + at(system.plan().rows)),
         residual_(at(system.plan().columns)) {}
@@ -36,6 +40,7 @@ class Settling {
   bool begin();
   double size();
   bool solve();
+  bool solve_with_gaps();
   bool stiffen();
   double move();
   bool is_balanced();
@@ -44,7 +49,9 @@ class Settling {
   StaticSystem& system_;
   std::span<double> q_, lambda_;
   const StaticSettlingOptions& options_;
+  ActiveSet& set_;
   std::optional<StaticTangent> tangent_;
+  std::optional<SettlingGaps> gaps_;
   StaticOutcome outcome_;
   const std::vector<double> start_;
   std::vector<double> x_, residual_;  // x: changes of q and lambda
@@ -55,6 +62,7 @@ class Settling {
 };
 
 bool Settling::begin() {
+  if (system_.has_gaps()) gaps_.emplace(system_, set_, options_.tolerance);
   system_.move_to(q_);
   if (!first_multipliers(system_, lambda_)) return false;
   tangent_.emplace(system_);
@@ -69,14 +77,29 @@ bool Settling::begin() {
 double Settling::size() {
   system_.residual(lambda_, residual_);
   outcome_.residual = system_.force_norm(residual_);
-  return outcome_.residual / force_ + system_.phi_norm();
+  return outcome_.residual / force_ + system_.phi_norm() + (gaps_ ? gaps_->overlap() : 0);
 }
 
+// The step from where the system is, to x_. False: there is none with this damping.
 bool Settling::solve() {
+  tangent_->fill(lambda_, damping_);
+  tangent_->set_compliance(settling_regularisation / stiffness_);
+  if (!tangent_->factorize()) return false;
   const std::size_t columns = residual_.size();
   for (std::size_t c = 0; c < columns; ++c) x_[c] = -residual_[c];
   for (std::size_t r = columns; r < x_.size(); ++r) x_[r] = -system_.phi()[r - columns];
   return tangent_->solve(x_);
+}
+
+// The same with the gaps that hold at its end.
+bool Settling::solve_with_gaps() {
+  gaps_->begin(q_, force_);
+  do {
+    gaps_->hold(q_, lambda_);
+    system_.residual(lambda_, residual_);
+    if (!solve()) return false;
+  } while (gaps_->change(lambda_, x_));
+  return gaps_->is_found();
 }
 
 // More damping after a step that failed. False: no more helps.
@@ -106,16 +129,14 @@ bool Settling::is_balanced() {
   const double scale = std::max(system_.force_scale(lambda_), force_);
   const double rounding = damping_ == 0 && outcome_.step <= last_change ? system_.rounding_force() : 0;
   return outcome_.residual <= options_.tolerance * scale + rounding &&
-         system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change());
+         system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change()) &&
+         (!gaps_ || gaps_->hold_all(lambda_));
 }
 
 // False: the search ends.
 bool Settling::step() {
-  tangent_->fill(lambda_, damping_);
-  tangent_->set_compliance(settling_regularisation / stiffness_);
-  if (!tangent_->factorize()) return stiffen();
-  const bool solved = solve();
   before_.keep(system_, q_, lambda_);
+  const bool solved = gaps_ ? solve_with_gaps() : solve();
   const double then = solved ? move() : size_;
   if (!solved || !(then <= tolerated_growth * size_ + options_.tolerance)) {
     before_.take_back(system_, q_, lambda_);
@@ -124,6 +145,8 @@ bool Settling::step() {
   }
   const double ratio = then / std::max(size_, 1e-300);
   damping_ *= factor_ < 1 ? 2 : std::clamp(ratio, fastest_fading, growth_after_failure);
+  // Short steps may be so for the damping alone, which then hides by how much the residual could shrink.
+  if (outcome_.step < exact_change) damping_ /= 2;
   if (damping_ < least_damping * stiffness_) damping_ = 0;
   size_ = then;
   if (travel_between(start_, q_).is_lost(extent_)) {
@@ -132,6 +155,7 @@ bool Settling::step() {
   }
   if (!is_balanced()) return true;
   outcome_.end = StaticEnd::stationary;
+  if (gaps_) mark_weak(system_, lambda_, set_);
   return false;
 }
 
@@ -148,7 +172,13 @@ StaticOutcome Settling::run() {
 
 StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::span<double> lambda,
                                 const StaticSettlingOptions& options) {
-  return Settling(system, q, lambda, options).run();
+  ActiveSet none;
+  return solve_by_settling(system, q, lambda, none, options);
+}
+
+StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::span<double> lambda, ActiveSet& set,
+                                const StaticSettlingOptions& options) {
+  return Settling(system, q, lambda, options, set).run();
 }
 
 }  // namespace catena

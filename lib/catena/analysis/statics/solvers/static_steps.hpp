@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "catena/analysis/balance/static_system.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 
@@ -16,6 +17,7 @@ enum class StaticEnd {
   slow,        ///< iterations exhausted
   singular,    ///< no factorization: a direction in which nothing resists
   unbounded,   ///< the energy falls without end
+  turning,     ///< whole turns downhill to where it was, with less energy: from there the same again
   cancelled,   ///< stopped by the user
 };
 
@@ -75,8 +77,10 @@ struct Travel {
   double turn = 0;    ///< rad
   double length = 0;  ///< m, along x or y
 
-  /// A mechanism that has moved 10^5 extents (m) is not held.
-  bool is_lost(double extent) const { return length > 1e5 * extent; }
+  /// So many extents (m), or radians, away that the rounding of places is as large as the mechanism.
+  bool is_lost(double extent) const {
+    return thresholds::position_rounding * length > extent || thresholds::position_rounding * turn > 1;
+  }
 };
 /// By a change of the plan's columns.
 Travel travel_of(const Plan& plan, std::span<const double> change);

@@ -1,0 +1,46 @@
+#include "catena/analysis/statics/solvers/endless_fall.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "catena/analysis/balance/descent_rules.hpp"
+#include "catena/analysis/run/thresholds.hpp"
+
+namespace catena {
+namespace {
+
+// Extents of the scene, or radians, at which the energy is first compared: its rounding is far below its fall there.
+constexpr double far = 1e3;
+// What the energy's fall may differ from F s by, of itself: its rounding is 1e-12, and any spring that is stretched on
+// the way is larger where the way is long enough.
+constexpr double bend = 1e-6;
+
+}  // namespace
+
+bool falls_for_ever(StaticSystem& system, std::span<const double> q, std::span<const double> direction) {
+  system.move_to(q);
+  const double size = system.change_norm(direction), energy = system.energy();
+  double force = 0;
+  for (std::size_t c = 0; c < direction.size(); ++c) force -= direction[c] * system.gradient()[c];
+  // Springs across the line are stretched by the rounding of its direction.
+  const double across = system.matrix().largest_stiffness();
+  const double longest = std::cbrt(std::numeric_limits<double>::max()) / system.length();
+  bool endless = force > 0 && std::isfinite(size);
+  std::vector<double> there;
+  const std::vector<CurvePlace> places = system.evaluator().curve_places();
+  for (double way = far * system.extent() / system.length(); endless && way < longest; way *= 2) {
+    const double s = way / size, rounding = thresholds::few_roundings * way * system.length();
+    there.assign(q.begin(), q.end());
+    system.advance(there, direction, s, std::numeric_limits<double>::infinity());
+    system.move_to(there);
+    endless = system.phi_norm() <= std::max(descent::restored, 10 * system.rounding_change()) &&
+              std::abs(energy - system.energy() - force * s) <= bend * force * s + across * rounding * rounding;
+  }
+  system.evaluator().go_to_curve_places(places);
+  system.move_to(q);
+  return endless;
+}
+
+}  // namespace catena

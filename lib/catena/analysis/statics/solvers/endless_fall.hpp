@@ -1,0 +1,20 @@
+// Whether an energy falls along a straight line for ever.
+//
+//   Phi(q + s v) = 0,   V(q + s v) = V(q) - F s,   F > 0        for all s > 0; v over columns, m and rad
+//
+// Tried out at distances that double as far as numbers reach: what begins to hold anywhere shows beyond that place, by
+// an energy that differs from F s. Rounding of v stretches what is stiff across the line, by no more than its own part
+// of s. Singular: none; a line that ends in a hollow narrower than its distance may pass for one that does not.
+#pragma once
+
+#include <span>
+
+#include "catena/analysis/balance/static_system.hpp"
+
+namespace catena {
+
+/// Whether V falls by F s along a direction (columns) from q without end, F > 0; the system is left at q, with the
+/// stiffnesses that its matrix holds.
+bool falls_for_ever(StaticSystem& system, std::span<const double> q, std::span<const double> direction);
+
+}  // namespace catena
