@@ -8,6 +8,7 @@
 
 #include "catena/analysis/events/engaged_turns.hpp"
 #include "catena/analysis/events/engagement.hpp"
+#include "catena/analysis/run/released_elements.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/base/at.hpp"
 
@@ -107,6 +108,8 @@ void DynamicsWithEvents::start_from(const SystemState& state) {
 SystemState DynamicsWithEvents::state() const {
   SystemState state = end_ ? *end_ : dynamics_->state();
   state.ropes = contacts_.turns(state);
+  // After what events did last, too, and no rows of contacts that are open.
+  state.released = released_by_events(*given_model_, plan_options_.released_elements);
   return state;
 }
 

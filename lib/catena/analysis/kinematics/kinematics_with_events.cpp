@@ -10,6 +10,7 @@
 
 #include "catena/analysis/events/engaged_turns.hpp"
 #include "catena/analysis/events/engagement.hpp"
+#include "catena/analysis/run/released_elements.hpp"
 #include "catena/analysis/run/report_parts.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/base/at.hpp"
@@ -258,6 +259,13 @@ Report KinematicsWithEvents::engage(std::span<const int> elements) {
     if (Report fits = check_fit(evaluator, configuration_of(evaluator, *end_), element); !fits.ok()) return fits;
   }
   return {};
+}
+
+// After what events did last, too.
+SystemState KinematicsWithEvents::state() const {
+  SystemState state = end_ ? *end_ : kinematics_->state();
+  state.released = released_by_events(*given_model_, plan_options_.released_elements);
+  return state;
 }
 
 Report KinematicsWithEvents::act(const Event*& stop) {

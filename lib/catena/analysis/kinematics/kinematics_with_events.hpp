@@ -37,7 +37,7 @@ class KinematicsWithEvents {
   void start_from(const SystemState& state);
   /// Instants of the grid must be in the order of time.
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
-  SystemState state() const { return end_ ? *end_ : kinematics_->state(); }
+  SystemState state() const;
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
   const std::vector<EventRecord>& records() const { return watch_->records(); }
 

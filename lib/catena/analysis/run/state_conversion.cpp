@@ -4,7 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "catena/analysis/run/released_elements.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -84,6 +86,11 @@ SystemState state_of(const Evaluator& evaluator, double t, std::span<const doubl
     if (!qd.empty()) std::copy_n(&qd[source], 3, &state.qd[target]);
   }
   state.curves = evaluator.curve_places();
+  std::vector<int> released;
+  for (int e = 0; e < static_cast<int>(plan.released.size()); ++e) {
+    if (plan.is_released(e)) released.push_back(e);
+  }
+  state.released = released_by_events(evaluator.model(), std::move(released));
   return state;
 }
 

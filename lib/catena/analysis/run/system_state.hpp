@@ -2,7 +2,8 @@
 // valid for other plans and parameters.
 //
 // Of ropes the places say how they lie but for whole turns: how far they are wound belongs to the state. So does where
-// curves touch, of several places that bodies allow.
+// curves touch, of several places that bodies allow, and which constraints have been released: who starts an analysis
+// from a state leaves their equations out (PlanOptions::released_elements).
 #pragma once
 
 #include <vector>
@@ -20,6 +21,8 @@ struct SystemState {
   std::vector<RopeTurns> ropes{};
   /// Where contacts on curves are at q; elements that are not among them search from the given configuration.
   std::vector<CurvePlace> curves{};
+  /// Constraints and drivers that do not hold, ascending: an event released them, or has not engaged them yet.
+  std::vector<int> released{};
 };
 
 }  // namespace catena

@@ -54,6 +54,7 @@ std::optional<LaneColumns> columns_of(const LaneProgram& program, const Model& m
 std::unique_ptr<LaneDesigns> LaneMotionDesigns::make(const AnalysisContext& context, std::string& why_not) {
   const AnalysisTask& inner = context.task.of.front();
   why_not = obstacle_of_motion(inner);
+  if (!context.state.released.empty()) why_not = "an event of an analysis before has released a constraint";
   if (!why_not.empty()) return nullptr;
   std::shared_ptr<const Model> model = context.models->model(*inner.table, context.seeds, &why_not);
   if (!model) return nullptr;

@@ -61,6 +61,7 @@ bool is_half_a_turn_off(const Plan& plan, std::span<const double> start, std::sp
 std::unique_ptr<LaneDesigns> LaneRestDesigns::make(const AnalysisContext& context, std::string& why_not) {
   const AnalysisTask& inner = context.task.of.front();
   why_not = obstacle_of_rest(inner);
+  if (!context.state.released.empty()) why_not = "an event of an analysis before has released a constraint";
   if (!why_not.empty()) return nullptr;
   std::shared_ptr<const Model> model = context.models->model(*inner.table, context.seeds, &why_not);
   if (!model) return nullptr;

@@ -141,8 +141,15 @@ std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report
   return grid;
 }
 
-PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs) {
-  return {elements_with_reactions(model, outputs)};
+PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs, const SystemState& state) {
+  return {.keep_elements = elements_with_reactions(model, outputs), .released_elements = state.released};
+}
+
+PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>& outputs, const SystemState& state) {
+  PlanOptions options = plan_options(model, outputs, state);
+  const std::vector<int> gaps = model.gaps();
+  options.released_elements.insert(options.released_elements.end(), gaps.begin(), gaps.end());
+  return options;
 }
 
 }  // namespace catena

@@ -122,8 +122,10 @@ inline void refuse(AnalysisResult& result, std::string message) {
   result.report.message = std::move(message);
 }
 
-/// The names whose reactions must be solved for, as plan options.
-PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs);
+/// The names whose reactions must be solved for, as plan options; `state`: what is released there has no equations.
+PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs, const SystemState& state = {});
+/// The same without equations of one-sided elements.
+PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>& outputs, const SystemState& state);
 
 /// What the result says of the rows that went to the sink.
 inline void take_rows(AnalysisResult& result, std::vector<ColumnInfo> columns, std::int64_t rows) {

@@ -108,9 +108,7 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const std::vector<std::string> names = context.task.output_names();
   RopeWaysAt ways(context.model);
   if (!context.state.q.empty() && ways.begin(context.state)) context.model = ways.model();
-  PlanOptions options = plan_options(*context.model, context.task.column_names());
-  options.released_elements = context.model->gaps();
-  Kinematics analysis(context.model, options);
+  Kinematics analysis(context.model, plan_without_gaps(*context.model, context.task.column_names(), context.state));
   const ColumnSources sources{.analysis = context.task.type()};
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
   start(analysis, context);
@@ -159,9 +157,9 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
   const ProcessTimer timer;
   const Model& model = *context.model;
   // Every equation counts here, those of welded bodies too.
-  PlanOptions options;
+  PlanOptions options = plan_without_gaps(model, {}, context.state);
+  options.keep_elements.clear();
   for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) options.keep_elements.push_back(e);
-  options.released_elements = model.gaps();
   Kinematics analysis(context.model, options);
   start(analysis, context);
   const AssemblyOutcome outcome = analysis.assemble();

@@ -166,7 +166,8 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   start.t = frozen_time(context);
   if (const std::string why = trouble_with_one_sided(context, start); !why.empty()) return refuse(result, why);
   Buckling analysis(
-      context.model, [&](double value) { return model_at(context, parameter, value); }, options);
+      context.model, [&](double value) { return model_at(context, parameter, value); }, options,
+      plan_options(*context.model, {}, start));
   analysis.start_from(start);
   BucklingReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
   std::vector<ColumnInfo> info;

@@ -179,7 +179,7 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan, 
 
 bool DynamicsTask::passes_kinks() const {
   if (changes_itself()) return true;
-  Dynamics motion(model_, plan_options(*model_, {}), used_options_);
+  Dynamics motion(model_, plan_options(*model_, {}, context_.state), used_options_);
   motion.start_from(context_.state);
   KinkLook look(*model_, context_.cancel);
   static_cast<void>(motion.run(*grid_, {}, look));  // where it does not end well the run itself says so
@@ -281,7 +281,7 @@ Pauses DynamicsTask::pauses(std::string& failure) const {
 void DynamicsTask::run_with_events_or_pauses() {
   std::vector<std::string> reactions = context_.task.column_names();
   for (const EventRequest& request : context_.task.events) reactions.push_back(request.column);
-  const PlanOptions plan = plan_options(*model_, reactions);
+  const PlanOptions plan = plan_options(*model_, reactions, context_.state);
   DynamicsWithEvents analysis(model_, plan, used_options_, events_of(context_.task, *model_), sources, follows_ropes());
   std::string failure, taken_up;
   if (context_.checkpoint) {
@@ -311,7 +311,7 @@ void DynamicsTask::run_with_events_or_pauses() {
 
 /// Mechanisms that have nothing to do with each other, and differ in pace.
 void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
-  const PlanOptions plan = plan_options(*model_, names_);
+  const PlanOptions plan = plan_options(*model_, names_, context_.state);
   DynamicsOfIslands analysis(model_, plan, used_options_, classes);
   run_over_time(context_, result_, analysis, *grid_, names_, sources, [&](AnalysisRows& rows) {
     judge(rows, analysis, [model = model_, plan, classes](const DynamicsOptions& options) {
@@ -356,11 +356,13 @@ void DynamicsTask::run_on() {
   const bool in_common = !context_.task.events.empty() || context_.checkpoint || follows_ropes();
   // A fixed step is the same for all; two runs that are compared must be divided alike.
   const bool looked_at = context_.design || !context_.task.measures.empty();
-  if (!in_common && !estimates_ && options_.step == 0 && !looked_at) {
+  // What is released is told by its number among all.
+  const bool whole = context_.state.released.empty();
+  if (!in_common && !estimates_ && options_.step == 0 && !looked_at && whole) {
     if (const auto classes = classes_of_pace(model_); classes.size() > 1) return run_apart(classes);
   }
   if (in_common || touches_) return run_with_events_or_pauses();
-  const PlanOptions plan = plan_options(*model_, context_.task.column_names());
+  const PlanOptions plan = plan_options(*model_, context_.task.column_names(), context_.state);
   Dynamics analysis(model_, plan, used_options_);
   run_or_estimate(analysis, plan, [model = model_, plan](const DynamicsOptions& options) {
     return std::make_unique<Dynamics>(model, plan, options);

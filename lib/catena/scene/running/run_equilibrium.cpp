@@ -73,7 +73,7 @@ std::optional<EquilibriumReport> find_ways_at_rest(AnalysisContext& context, con
   EquilibriumOptions one = options;
   one.find = 1;
   for (int pass = 0; pass < most_passes; ++pass) {
-    Equilibrium trial(ways.model(), plan_options(*ways.model(), context.task.column_names()), one);
+    Equilibrium trial(ways.model(), plan_options(*ways.model(), context.task.column_names(), start), one);
     trial.start_from(start);
     EquilibriumReport report = trial.solve();
     trial.evaluator().set_configuration(trial.q());
@@ -233,7 +233,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   start.t = frozen_time(context);
   RopeWaysAt ways(context.model);
   const std::optional<EquilibriumReport> failed = find_ways_at_rest(context, options, ways, start);
-  Equilibrium analysis(context.model, plan_options(*context.model, task.column_names()), options);
+  Equilibrium analysis(context.model, plan_options(*context.model, task.column_names(), start), options);
   if (std::string trouble = trouble_with_solver(options.solver, analysis, *context.model); !trouble.empty())
     return refuse(result, std::move(trouble));
   const ColumnSources sources{.analysis = task.type(), .multipliers = true};

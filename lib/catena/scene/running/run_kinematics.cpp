@@ -17,13 +17,6 @@
 namespace catena {
 namespace {
 
-/// One-sided elements do not take part, but for ropes that determine the motion (TautRopes): they are watched.
-PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>& outputs) {
-  PlanOptions options = plan_options(model, outputs);
-  options.released_elements = model.gaps();
-  return options;
-}
-
 /// A driven motion whose ropes meet and leave pulleys: they take no part in it, but for `taut` ones, but their columns
 /// do. `obstacle`: what does not go on where one does, if anything.
 template <class Analysis>
@@ -129,7 +122,7 @@ std::string trouble_of_taut(const AnalysisContext& context, const TautRopes& tau
 
 /// Whether constraints and drivers determine the motion where the analysis starts.
 bool is_driven(const AnalysisContext& context) {
-  Kinematics analysis(context.model, plan_without_gaps(*context.model, {}));
+  Kinematics analysis(context.model, plan_without_gaps(*context.model, {}, context.state));
   analysis.start_from(context.state);
   RowFunction nothing([](const Snapshot&) { return true; });
   return analysis.run(TimeGrid::instant(context.state.t), {}, nothing).status != Status::under_driven;
@@ -179,7 +172,7 @@ void run_with_events(AnalysisContext& context, AnalysisResult& result, const Tim
   const AnalysisTask& task = context.task;
   std::vector<std::string> reactions = task.column_names();
   for (const EventRequest& request : task.events) reactions.push_back(request.column);
-  PlanOptions plan = plan_without_gaps(*context.model, reactions);
+  PlanOptions plan = plan_without_gaps(*context.model, reactions, context.state);
   taut.add_rows(plan);
   KinematicsWithEvents analysis(context.model, plan, options, events_of(task, *context.model), sources);
   WithRopes watched(analysis, ways, taut, "a motion with events does not go on: end it before, or do without events");
@@ -239,10 +232,10 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
   if (const std::string why = trouble_of_ropes(context, ways); !why.empty()) return refuse(result, why);
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
-  TautRopes taut(context.model, plan_without_gaps(*context.model, {}), context.state);
+  TautRopes taut(context.model, plan_without_gaps(*context.model, {}, context.state), context.state);
   if (const std::string why = trouble_of_taut(context, taut, inverse_dynamics); !why.empty())
     return refuse(result, why);
-  PlanOptions plan = plan_without_gaps(*context.model, task.column_names());
+  PlanOptions plan = plan_without_gaps(*context.model, task.column_names(), context.state);
   taut.add_rows(plan);
   KinematicsOptions options;
   options.inverse_dynamics = inverse_dynamics;

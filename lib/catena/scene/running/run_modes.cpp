@@ -126,7 +126,7 @@ bool find_with_ways(AnalysisContext& context, RopeWaysAt& ways, const SystemStat
                     std::optional<Modes>& analysis, ModesReport& report) {
   const auto go_on = [&] { return !(context.cancel && context.cancel->load()); };
   const auto find = [&] {
-    analysis.emplace(context.model, PlanOptions{}, options);
+    analysis.emplace(context.model, plan_options(*context.model, {}, start), options);
     analysis->start_from(start);
     report = analysis->run(go_on);
   };

@@ -124,7 +124,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   start.t = frozen_time(context);
   if (const std::string why = trouble_with_one_sided(context, start); !why.empty()) return refuse(result, why);
   const ModelAt models = [&](double value) { return model_at(context, parameter, value); };
-  Path analysis(context.model, models, options, plan_options(*context.model, task.column_names()));
+  Path analysis(context.model, models, options, plan_options(*context.model, task.column_names(), context.state));
   const ColumnSources sources{.analysis = task.type(), .multipliers = true};
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), task.output_names(), sources);
   analysis.start_from(start);

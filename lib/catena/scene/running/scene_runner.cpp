@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/scene/models/scene_saving.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/scene_setup.hpp"
@@ -122,6 +123,24 @@ SceneSetup::NamedValues SceneRun::changed_parameters(const AnalysisTask& task) {
   return changed;
 }
 
+/// What does not hold from the start, since an analysis before has left it so, and no event of this one engages.
+void tell_of_released(const Model& model, const std::vector<int>& released, const AnalysisTask& task, Report& report) {
+  constexpr int engage = 3;  // among the words of the key
+  NameList names;
+  for (const int element : released) {
+    const std::string name = model.element_name(element);
+    const bool engaged = std::any_of(task.events.begin(), task.events.end(), [&](const EventRequest& event) {
+      return event.action == engage && event.element == name;
+    });
+    if (!engaged) names.add(name);
+  }
+  if (names.count() == 0) return;
+  report.warnings.push_back(
+      fmt::format("released where the analysis before ended, and not held in this one: {}; \"from\": \"initial\" "
+                  "begins with all that the scene has",
+                  names.text()));
+}
+
 AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows) {
   AnalysisResult result;
   std::optional<std::string> unfit;
@@ -165,7 +184,9 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
       options_.progress({task.type(), number, static_cast<int>(setup_.tasks().size()), fraction});
     };
   }
+  const std::vector<int> released = state.released;
   run_in(context, result);
+  tell_of_released(*context.model, released, task, result.report);
   if (result.report.ok() && has_digits(task) && !asks_for_digits(task))
     result.fields.push_back({"digits_note", std::string("no digits are claimed: they were not asked for")});
   note_origin_of_state(task);
