@@ -8,6 +8,7 @@
 #include "stress/path_digits.hpp"
 #include "stress/resting_digits.hpp"
 #include "stress/rope_digits.hpp"
+#include "stress/stiff_digits.hpp"
 #include "stress/touching_digits.hpp"
 
 namespace catena::testing {
@@ -55,6 +56,14 @@ TEST(Digits, OfMethodsThatRunTwiceAreThoseClaimed) {
     claims.expect(std::string("in motion, ") + title);
   }
   print_shares("digits of adams, baumgarte and partitioning", seen);
+}
+
+TEST(Digits, OfStiffMotionsAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (unsigned seed = first_case(); seed <= last_case(100); ++seed) ++seen[add_stiff_digits(seed, claims)];
+  print_shares("digits of stiff motions", seen);
+  claims.expect("stiff");
 }
 
 TEST(Digits, OfMotionsWithContactsAreThoseClaimed) {

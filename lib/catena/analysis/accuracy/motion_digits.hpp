@@ -1,13 +1,16 @@
 // How many digits of a motion's columns are right is found from the error that is carried along with one run
 // (motion_accuracy.hpp, accuracy_of_islands.hpp), or from a second run (second_run.hpp) where contacts and events
-// change the mechanism, with which the carried error is lost, and for methods that do not tell their own.
+// change the mechanism, with which the carried error is lost, and for methods that do not tell their own; where `auto`
+// may turn to one of these after the run alone (accuracy_by_choice.hpp).
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <type_traits>
 #include <utility>
 
+#include "catena/analysis/accuracy/accuracy_by_choice.hpp"
 #include "catena/analysis/accuracy/accuracy_of_islands.hpp"
 #include "catena/analysis/accuracy/motion_accuracy.hpp"
 #include "catena/analysis/accuracy/second_run.hpp"
@@ -33,11 +36,22 @@ IntegrationMethod used_method(const Analysis& analysis) {
     return analysis.method();
 }
 
-/// Whether this motion, by this method, is made twice.
-inline bool wants_second_run(const AskedMotion& motion, IntegrationMethod method) {
-  return motion.changes || method == IntegrationMethod::adams || method == IntegrationMethod::baumgarte ||
-         method == IntegrationMethod::partitioning || method == IntegrationMethod::radau ||
-         method == IntegrationMethod::alpha || method == IntegrationMethod::rattle;
+/// Whether errors of its steps cannot be carried along with this method.
+inline bool carries_no_error(IntegrationMethod method) {
+  return method != IntegrationMethod::automatic && method != IntegrationMethod::rk8 && method != IntegrationMethod::rk5;
+}
+inline bool has_adaptive_implicit_steps(IntegrationMethod method) {
+  return method == IntegrationMethod::radau || method == IntegrationMethod::alpha;
+}
+
+/// Of the error that is carried along with it.
+template <class Analysis>
+std::unique_ptr<RowAccuracy> carried_accuracy(Analysis& analysis, const ColumnSet& columns,
+                                              const ColumnSources& sources) {
+  if constexpr (std::is_same_v<Analysis, DynamicsOfIslands>)
+    return std::make_unique<AccuracyOfIslands>(analysis, columns, sources);
+  else
+    return std::make_unique<MotionAccuracy>(analysis, columns);
 }
 
 /// Of analysis.run(), which follows; both must outlive the result, and the columns. `make`: another analysis of the
@@ -46,16 +60,13 @@ template <class Analysis, class Make>
 std::unique_ptr<RowAccuracy> accuracy_of_motion(Analysis& analysis, const ColumnSet& columns, const AskedMotion& motion,
                                                 Make make) {
   const IntegrationMethod method = used_method(analysis);
-  if (!wants_second_run(motion, method)) {
-    if constexpr (std::is_same_v<Analysis, DynamicsOfIslands>)
-      return std::make_unique<AccuracyOfIslands>(analysis, columns, motion.sources);
-    else
-      return std::make_unique<MotionAccuracy>(analysis, columns);
-  }
-  const auto second = [start = motion.start, grid = motion.grid, coarser = coarser_options(motion.options), make](
-                          const Needs& needs, RowObserver& observer, bool by_other_method) {
+  const auto is_implicit = [&analysis] { return std::ranges::any_of(analysis.methods(), has_adaptive_implicit_steps); };
+  const auto turned = [&analysis] { return std::ranges::any_of(analysis.methods(), carries_no_error); };
+  const auto is_smooth = [&analysis] { return analysis.singular_points().empty() && analysis.jolts().empty(); };
+  const auto second = [start = motion.start, grid = motion.grid, coarser = coarser_options(motion.options), make,
+                       is_implicit](const Needs& needs, RowObserver& observer, bool by_other_method) {
     DynamicsOptions options = coarser;
-    if (by_other_method && options.method == IntegrationMethod::radau)
+    if (by_other_method && is_implicit())
       options.tolerance = std::max(options.tolerance / 100, DynamicsOptions::least_tolerance);
     else if (by_other_method)
       options.method = options.method == IntegrationMethod::rk5 ? IntegrationMethod::rk8 : IntegrationMethod::rk5;
@@ -66,8 +77,15 @@ std::unique_ptr<RowAccuracy> accuracy_of_motion(Analysis& analysis, const Column
   };
   const auto proceed = [cancel = motion.cancel] { return !(cancel && cancel->load(std::memory_order_relaxed)); };
   const auto first = [&analysis] { return changes_of(analysis); };
-  return std::make_unique<SecondRun>(columns, SecondRun::Runs{first, second, proceed},
-                                     method == IntegrationMethod::baumgarte);
+  const bool wants_second = motion.changes || carries_no_error(method);
+  const bool may_turn = motion.options.method == IntegrationMethod::automatic && motion.options.may_turn_implicit &&
+                        motion.options.step == 0;
+  if (!wants_second && !may_turn) return carried_accuracy(analysis, columns, motion.sources);
+  auto runs = std::make_unique<SecondRun>(columns, SecondRun::Runs{first, second, proceed},
+                                          method == IntegrationMethod::baumgarte);
+  if (wants_second) return runs;
+  return std::make_unique<AccuracyByChoice>(carried_accuracy(analysis, columns, motion.sources), std::move(runs),
+                                            turned, is_smooth);
 }
 
 }  // namespace catena
