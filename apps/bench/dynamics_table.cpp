@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "cases/parallelogram.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "mechanisms.hpp"
 #include "moving_mechanisms.hpp"

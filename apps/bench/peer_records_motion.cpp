@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "cases/parallelogram.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "moving_mechanisms.hpp"

@@ -197,7 +197,6 @@ TEST(Bench, BriefRunOfAllSuitesIsRight) {
     EXPECT_TRUE(row.at("seconds").is_number()) << name;
     EXPECT_GE(row.at("repeats"), 1) << name;
     EXPECT_TRUE(row.at("counts").is_object()) << name;
-    if (row.at("method") == "plan" || !is_ours) continue;  // has no answer to be wrong; is the reference itself
     ASSERT_TRUE(row.at("error").is_number()) << name;
     EXPECT_NE(row.at("reference"), "") << name;
     EXPECT_TRUE(row.at("allowed").is_number() || row.at("method") == "baumgarte") << name;
@@ -340,6 +339,19 @@ TEST(Bench, RecordsOfOtherEnginesBecomeRows) {
   EXPECT_EQ(document.rows[1].error, 2e-3);
   expect_said(run.out, "2 records from records.tsv");
   EXPECT_EQ(run_catena({"bench", "kernels", "--brief", "-q", "--peers", folder / "none"}).exit_code, 4);
+}
+
+TEST(Bench, EnginesThatAreAbsentAreNamed) {
+  const TemporaryFolder folder;
+  const std::filesystem::path program = folder / "peer_cvodes";
+  std::ofstream(program) << "#!/bin/sh\nprintf 'S5\\tcvodes\\tadjoint\\t1e-05\\t2\\t3\\t7\\t1e-6\\n'\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const ProgramResult run =
+      run_catena({"bench", "design", "contact", "--brief", "--only", "cvodes", "--peers", folder / ""});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  expect_said(run.out, "peers: absent, and no rows of theirs: peer_contact_box2d (contact)");
+  expect_said(run.out, "peer_contact_siconos (contact)");
+  for (const char* wrong : {"peer_cvodes (", "(dynamics)"}) EXPECT_EQ(run.out.find(wrong), std::string::npos) << wrong;
 }
 
 TEST(Bench, WrongWordsAndFilesAreNamed) {

@@ -35,7 +35,18 @@ constexpr PeerScene scenes[] = {{"acceleration", "S1a", "kernels"},
                                 {"equilibrium", "S4", "equilibrium"},
                                 {"gradient", "S5", "design", "peer_cvodes"},
                                 {"contact", "S6", "contact", "peer_contact_"}};
-constexpr int time_limit = 60;  // s a scene; records printed so far are kept
+/// Programs of this repository (peers/CMakeLists.txt), and the suites that they have rows in.
+struct KnownProgram {
+  std::string_view name;
+  std::string_view suite;
+};
+constexpr KnownProgram known_programs[] = {
+    {"peer_contact_box2d", "contact"},  {"peer_contact_bullet", "contact"}, {"peer_contact_chipmunk", "contact"},
+    {"peer_contact_mujoco", "contact"}, {"peer_contact_ode", "contact"},    {"peer_contact_siconos", "contact"},
+    {"peer_cvodes", "design"},          {"peer_bullet", "dynamics"},        {"peer_dart", "dynamics"},
+    {"peer_mujoco", "dynamics"},        {"peer_simbody", "dynamics"}};
+constexpr int time_limit = 60;    // s a scene; records printed so far are kept
+constexpr int unknown_scene = 2;  // exit status of a program that does not have it
 
 using Fields = std::vector<std::string>;
 
@@ -161,6 +172,7 @@ void run_program(Bench& bench, const fs::path& program, const std::function<bool
       while (const std::size_t read = std::fread(buffer, 1, sizeof buffer, pipe)) output.append(buffer, read);
       status = ::pclose(pipe);
     }
+    if (WIFEXITED(status) && WEXITSTATUS(status) == unknown_scene) continue;
     const int rows = add_records(bench, output, wanted);
     const std::string name = program.filename().string() + " " + scene.scene;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 124) {
@@ -170,6 +182,18 @@ void run_program(Bench& bench, const fs::path& program, const std::function<bool
                                WIFEXITED(status) ? WEXITSTATUS(status) : status));
     }
   }
+}
+
+/// Tells which of the known ones are not there.
+void remark_absent(Bench& bench, const std::vector<fs::path>& programs,
+                   const std::function<bool(std::string_view)>& wanted) {
+  std::string absent;
+  for (const KnownProgram& known : known_programs) {
+    const auto is_it = [&](const fs::path& program) { return program.filename().string() == known.name; };
+    if (!wanted(known.suite) || std::any_of(programs.begin(), programs.end(), is_it)) continue;
+    absent += fmt::format("{}{} ({})", absent.empty() ? "" : ", ", known.name, known.suite);
+  }
+  if (!absent.empty()) bench.remark("peers: absent, and no rows of theirs: " + absent);
 }
 
 }  // namespace
@@ -196,6 +220,7 @@ void add_peers(Bench& bench, const std::function<bool(std::string_view)>& wanted
   std::sort(programs.begin(), programs.end());
   if (programs.empty()) bench.remark("peers: none was run: " + path + " has no program peer_NAME");
   for (const fs::path& program : programs) run_program(bench, program, wanted);
+  if (!programs.empty()) remark_absent(bench, programs, wanted);
 }
 
 }  // namespace bench

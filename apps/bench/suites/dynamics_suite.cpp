@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "cases/exact_chain.hpp"
+#include "cases/parallelogram.hpp"
 #include "cases/reference_file.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/elements/all.hpp"
