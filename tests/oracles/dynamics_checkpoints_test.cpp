@@ -9,6 +9,7 @@
 #include "catena/elements/constraints/cam_flat.hpp"
 #include "catena/elements/constraints/point_on_curve.hpp"
 #include "catena/elements/constraints/translational.hpp"
+#include "catena/elements/forces/point_force.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 #include "oracles/redundant_mechanisms.hpp"
 
@@ -155,6 +156,26 @@ TEST(DynamicsPauses, MemoriesOfOtherMotionsAreRefused) {
   dynamics.resume(other.memories.front());
   RowFunction none([](const Snapshot&) { return true; });
   EXPECT_EQ(dynamics.run(TimeGrid::range(0, 1, 0.1), everything, none).status, Status::refused);
+}
+
+// A particle that nothing gives a length, pushed to and fro: the one that its motion had at the start is that of the
+// rest, too.
+TEST(DynamicsPauses, KeepTheLengthOfTheMotion) {
+  const auto model = std::make_shared<Model>();
+  const int body = model->add_body("ball", {.mass = 2, .particle = true});
+  model->bodies[static_cast<std::size_t>(body)].velocity = {3, 0};
+  model->bodies[static_cast<std::size_t>(body)].velocity_given = true;
+  constexpr double force = 10, omega = 4;
+  model->add_force("push", PointForce<>{}, body, ground,
+                   {TimeFunction<double>::harmonic(force, omega, 0, 0), TimeFunction<double>(0.0)});
+  const DynamicsOptions options{.method = IntegrationMethod::rk8, .tolerance = 1e-6};
+  const TimeGrid grid = TimeGrid::range(0, 10, 0.5);
+  const Outcome once = run(model, options, grid, 100), often = run(model, options, grid, 1);
+  ASSERT_GT(often.memories.size(), 3u);
+  // |v| T + |a| T^2 / 2 with T = 1 / omega, by differences over a hundredth of a second.
+  const double way = 3 / omega + force / 2 / (2 * omega * omega);
+  for (const MotionMemory& memory : often.memories) EXPECT_NEAR(memory.length, way, 1e-3 * way);
+  EXPECT_EQ(once.rows.values, often.rows.values);
 }
 
 // Pauses cost accuracy no more than the tolerance allows.

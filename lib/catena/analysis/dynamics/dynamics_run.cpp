@@ -76,7 +76,7 @@ Report Dynamics::start() {
   row_.driver_work.assign(work_.account ? model_->elements.size() : 0, 0.0);
   motion_.emplace(equations_, work_.account ? &*work_.account : nullptr);
   if (plan_->rows == 0 && lacks_length(evaluator_)) {
-    const double way = way_of_motion(equations_, t_, q_, qd_, run_.grid.last());
+    const double way = origin_.resumed ? memory_.length : way_of_motion(equations_, t_, q_, qd_, run_.grid.last());
     if (way > 0) motion_->set_length_scale(way);
   }
   integrator_ = make_integrator(*motion_, run_.grid.last());
@@ -285,6 +285,8 @@ void Dynamics::remember() {
     memory_.turns[b] = std::round(turned[3 * b + 2] / (2 * std::numbers::pi));
   }
   memory_.initial_energy = work_.initial_energy;
+  memory_.energy = energy_in_motion();
+  memory_.length = motion_->length_scale();
   memory_.next_row = run_.next_row;
   memory_.steps = evaluator_.counters.steps + evaluator_.counters.rejected - pace_.first_step;
   memory_.integrator = integrator_->memory();
@@ -296,6 +298,7 @@ void Dynamics::remember() {
 void Dynamics::resume(const MotionMemory& memory) {
   memory_ = memory;
   work_.earlier = memory.earlier;
+  work_.earlier_motion = memory.energy;
   t_ = memory.t;
   origin_.resumed = origin_.prepared = true;
   evaluator_.go_to_curve_places(memory.curves);

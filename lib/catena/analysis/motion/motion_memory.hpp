@@ -60,6 +60,8 @@ struct MotionMemory {
   std::vector<double> y;      ///< [q, qd, work] in the order of the plan, relative to its origins; see Motion
   std::vector<double> turns;  ///< by moving body: whole turns that its angle in y lacks
   double initial_energy = 0;
+  double energy = 0;                     ///< what was in motion at most, J: see BalanceWatch
+  double length = 0;                     ///< what errors of places are compared with, m: see Motion
   std::int64_t next_row = 0, steps = 0;  ///< of the grid; made so far, rejected ones included
   std::int64_t rows_given = 0;           ///< those at events included
   SparseVectors left_out;                ///< directions among the rows: see RedundantRows
