@@ -2,7 +2,9 @@
 // that nothing in the motion tells how short a step has to be.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "analysis/sanitized.hpp"
 #include "catena/elements/all.hpp"
@@ -131,6 +133,44 @@ TEST(DrivenWork, OfADamperThatIsPassed) {
     const double done = taken + v * v - a * a * w * w + k * x * x / 2;
     const double allowed = 1e-8 + 1000 * tolerance * (taken + a * a * w * w);
     const double off = std::max(std::abs(run.last("energy.dissipated") - taken), std::abs(run.last("d.work") - done));
+    return off <= allowed ? "" : text_of(off) + " off, allowed " + text_of(allowed);
+  });
+}
+
+// The same against a stop, whose force bends at its end and has bent away again where it lets go.
+TEST(DrivenWork, OfAStopThatIsHit) {
+  expect_no_fault(1, size_of_test(72u, 6u), [](unsigned seed) -> std::string {
+    RandomNumbers random(seed);
+    const double a = random(0.3, 0.5), w = random(2, 6), end = random(0.1, 0.25), until = random(2, 4);
+    const double k = std::pow(10, random(2, 5)), c = seed % 2 == 0 ? 0 : random(0.1, 1) * std::sqrt(k);
+    const char* const methods[] = {"rk8", "rk5", "adams", "radau", "auto", "alpha"};
+    const bool second_order = seed % 6 == 5;
+    const double tolerance = second_order ? std::pow(10, -5.0 - seed / 6 % 2) : std::pow(10, -5.0 - seed / 6 % 8);
+    // It closes where x reaches the end, and lets go where its force comes to nothing.
+    double taken = 0;
+    constexpr int parts = 100'000;
+    const double closes = std::asin(end / a), opens = std::numbers::pi - closes;
+    for (double turn = 0; (closes + turn) / w < until; turn += 2 * std::numbers::pi) {
+      const double from = (closes + turn) / w, length = std::min((opens + turn) / w, until) - from;
+      for (int n = 0; n < parts; ++n) {
+        const double t = from + length * (n + 0.5) / parts, x = a * std::sin(w * t) - end, v = a * w * std::cos(w * t);
+        taken += std::max(k * x + c * v, 0.0) * v * length / parts;
+      }
+    }
+    const TextRun run = run_text(
+        R"({"catena": 1, "bodies": {"b": {"mass": 2, "inertia": 1}},
+        "constraints": [{"type": "translational", "i": "ground", "j": "b", "axis_i": [1, 0]}],
+        "drivers": [{"type": "absolute_x", "name": "d", "i": "b", "value": {"harmonic": {"amplitude": )" +
+        text_of(a) + R"(, "omega": )" + text_of(w) + R"(}}}],
+        "forces": [{"type": "stop", "column": "b.x", "max": )" +
+        text_of(end) + R"(, "k": )" + text_of(k) + R"(, "c": )" + text_of(c) +
+        R"(}], "outputs": ["d.work", "energy"], "analyses": [{"type": "dynamics", "digits": false, "until": )" +
+        text_of(until) + R"(, "every": )" + text_of(until / 7) + R"(, "method": ")" + methods[seed % 6] +
+        R"(", "tolerance": )" + text_of(tolerance) + "}]}");
+    if (!run.analysis().report.ok()) return run.analysis().report.message;
+    const double v = a * w * std::cos(w * until), exchanged = a * a * w * w + k * a * a;
+    const double off = std::abs(run.last("d.work") - (taken + v * v - a * a * w * w));
+    const double allowed = (1e-9 + 1000 * tolerance) * exchanged;
     return off <= allowed ? "" : text_of(off) + " off, allowed " + text_of(allowed);
   });
 }

@@ -195,7 +195,21 @@ double Alpha::error_of_step(double h) {
   const double ratio = last_h_ > 0 ? h / last_h_ : 0;
   for (std::size_t c = 0; c < n; ++c)
     change[c] = slope_new_[n + c] - slope_[n + c] - ratio * (slope_[n + c] - slope_before_[n + c]);
-  return std::max(of_place, size_of(change, h, 0, h / 12, 1));
+  return std::max({of_place, size_of(change, h, 0, h / 12, 1), error_of_work(h, ratio)});
+}
+
+// Of the work of loads and of what dampers take, by the second difference of their powers: the trapezoid rule.
+double Alpha::error_of_work(double h, double ratio) const {
+  double largest = 0;
+  for (const std::size_t place : ErrorScale::judged(motion_.works())) {
+    const std::size_t k = 2 * motion_.coordinates() + place;
+    const double change = slope_new_[k] - slope_[k];
+    const double error = h / 12 * std::abs(change - ratio * (slope_[k] - slope_before_[k]));
+    if (error == 0) continue;
+    largest = std::max(largest, scale_.size_of_work(error, y_[k], y_[k] + h / 2 * (slope_[k] + slope_new_[k]), h,
+                                                    motion_.equations().applied_forces()));
+  }
+  return largest;
 }
 
 // Takes the end of the step to the constraints and evaluates there.
@@ -207,6 +221,7 @@ bool Alpha::finish() {
 void Alpha::accept(double h, double error) {
   const std::size_t n = motion_.coordinates();
   for (std::size_t k = 2 * n; k < y_.size(); ++k) y_new_[k] = y_[k] + h / 2 * (slope_[k] + slope_new_[k]);
+  tell_work(t_new_, t_, y_, y_new_);
   y_before_.swap(y_);
   y_.swap(y_new_);
   slope_before_.swap(slope_);
@@ -230,6 +245,7 @@ void Alpha::accept(double h, double error) {
 void Alpha::interpolate(double t, std::span<double> y) {
   if (stepped_by_runge_kutta_) return runge_kutta_.interpolate(t, y);
   implicit_step::interpolate({t_before_, t_, y_before_, y_, slope_before_, slope_}, t, motion_.coordinates(), y);
+  tell_work_between(t, y);
 }
 
 }  // namespace catena

@@ -124,8 +124,9 @@ bool Radau::advance(double limit) {
 // Takes the end of the step to the constraints and evaluates there.
 bool Radau::finish() {
   for (std::size_t k = 0; k < y_.size(); ++k) y_new_[k] = y_[k] + z_[2][k];
-  return implicit_step::project_end(motion_, t_new_, scale_.rate(), y_new_, position_residual_) &&
-         motion_.derivative(t_new_, Side::before, y_new_, error_);
+  if (!implicit_step::project_end(motion_, t_new_, scale_.rate(), y_new_, position_residual_)) return false;
+  tell_work(t_new_, t_, y_, y_new_);
+  return motion_.derivative(t_new_, Side::before, y_new_, error_);
 }
 
 void Radau::accept(double h, double error) {
@@ -170,7 +171,10 @@ void Radau::reject(double h, double error) {
 void Radau::interpolate(double t, std::span<double> y) {
   if (stepped_by_runge_kutta_) return runge_kutta_.interpolate(t, y);
   if (smooth_ == Smooth::unknown) smooth_ = is_smooth() ? Smooth::yes : Smooth::no;
-  if (smooth_ == Smooth::yes) return implicit_step::interpolate_quintic(ends(), t, motion_.coordinates(), y);
+  if (smooth_ == Smooth::yes) {
+    implicit_step::interpolate_quintic(ends(), t, motion_.coordinates(), y);
+    return tell_work_between(t, y);
+  }
   const std::array<double, 3>& c = radau_tableau().c;
   const double s = (t - t_before_) / last_h_;
   std::copy(y_before_.begin(), y_before_.end(), y.begin());
@@ -181,6 +185,7 @@ void Radau::interpolate(double t, std::span<double> y) {
     }
     for (std::size_t k = 0; k < y.size(); ++k) y[k] += weight * last_z_[j][k];
   }
+  tell_work_between(t, y);
 }
 
 // Whether the polynomial of both ends goes through the stages of the last step, as far as these are known.

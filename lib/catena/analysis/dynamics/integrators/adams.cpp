@@ -186,6 +186,7 @@ bool Adams::finish(double h) {
   position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
   if (!(position_residual_ < RungeKutta::largest_residual)) return false;
   equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
+  tell_work(t_new_, t_, y_, y_new_);
   return motion_.derivative(t_new_, Side::before, y_new_, slope_);
 }
 
@@ -230,6 +231,7 @@ void Adams::interpolate(double t, std::span<double> y) {
       if (c < n) y[c] = y_[c] + s * (y_[n + c] + s * twice[c - begin]);
     }
   }
+  tell_work_between(t, y);
 }
 
 IntegratorMemory Adams::memory() const { return memory_of(scale_, h_); }

@@ -14,7 +14,11 @@ constexpr double usual_ratios_forgotten = 0.97;  // of what was usual, at every 
 }  // namespace
 
 CrossingIntegrator::CrossingIntegrator(Motion motion, const RungeKuttaOptions& options)
-    : motion_(motion), runge_kutta_(motion, options), usual_ratio_(std::max(1e-300, options.usual_ratio)) {}
+    : motion_(motion),
+      runge_kutta_(motion, options),
+      usual_ratio_(std::max(1e-300, options.usual_ratio)),
+      energy_(motion, 0, motion.length_scale(),
+              options.fixed_step > 0 ? StepEnergy::Tells::nothing : StepEnergy::of(motion)) {}
 
 void CrossingIntegrator::forget_passages() {
   largest_ratio_ = 0;
@@ -50,6 +54,20 @@ bool CrossingIntegrator::step_by_runge_kutta(double limit, double first, ErrorSc
   stepped_by_runge_kutta_ = true;
   observe_ratio();
   return true;
+}
+
+void CrossingIntegrator::tell_work(double t, double t_before, std::span<const double> y_before,
+                                   std::span<double> y) const {
+  energy_.restore_work(motion_, {.t = t, .h = t - t_before, .y_before = y_before, .y = y});
+}
+
+void CrossingIntegrator::tell_work_between(double t, std::span<double> y) const {
+  if (!energy_.tells_work(motion_)) return;
+  EquationsOfMotion& equations = motion_.equations();
+  if (!equations.factorize(t, Side::after, motion_.q(std::span<const double>(y)))) return;
+  equations.project_position(motion_.q(y), 4);
+  equations.project_velocity(motion_.qd(y), rate());
+  tell_work(t, t_, y_, y);
 }
 
 bool CrossingIntegrator::has_crossed() {

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+#include "catena/analysis/dynamics/integrators/step_energy.hpp"
 
 namespace catena {
 
@@ -43,6 +44,11 @@ class CrossingIntegrator : public Integrator {
     }
     return true;
   }
+  /// What drivers that move all of the mechanism have done since the end y_before of a step at t_before, by the balance
+  /// of energy: into y at t, which is on the constraints.
+  void tell_work(double t, double t_before, std::span<const double> y_before, std::span<double> y) const;
+  /// The same within the last step, for a y that is near the constraints, from the end of the step.
+  void tell_work_between(double t, std::span<double> y) const;
   /// Counts a step across, and says whether the passage lies behind it: then another method may go on.
   bool has_crossed();
   /// The memory of a scale, with step (s) and pivots.
@@ -54,6 +60,7 @@ class CrossingIntegrator : public Integrator {
   bool crossing_ = false, stepped_by_runge_kutta_ = false;
 
  private:
+  StepEnergy energy_;
   double largest_ratio_ = 0;
   std::int64_t crossing_steps_ = 0;
 };

@@ -195,23 +195,21 @@ bool RungeKutta::watches_energy() const {
   return projects() && energy_.watches(ratios_.at_start(), trials_.project_stages());
 }
 
-bool RungeKutta::tells_work() const { return projects() && energy_.tells_work(); }
+bool RungeKutta::tells_work() const { return projects() && energy_.tells_work(motion_); }
 
-BalancedStep RungeKutta::balanced_step(double t, double h, std::span<const double> before, std::span<double> y) const {
-  return {.t = t,
-          .h = h,
-          .y_before = before,
-          .y = y,
-          .error = error_,
-          .errors = step_error_ + rounding_of_velocity(h),
-          .scale = scale_,
-          .weights = tableau().b};
+BalancedEnds RungeKutta::balanced_ends(double t, double h, std::span<const double> before, std::span<double> y) const {
+  return {.t = t, .h = h, .y_before = before, .y = y, .error = error_};
 }
 
 // Balances the step from y_ to y_new_, of size h, which was projected. False: it has lost its way.
 bool RungeKutta::balance(double h) {
-  if (watches_energy()) return energy_.restore(motion_, balanced_step(t_new_, h, y_, y_new_));
-  if (work_told_) energy_.restore_work(motion_, balanced_step(t_new_, h, y_, y_new_));
+  const BalancedEnds ends = balanced_ends(t_new_, h, y_, y_new_);
+  if (watches_energy()) {
+    return energy_.restore(
+        motion_,
+        {.ends = ends, .errors = step_error_ + rounding_of_velocity(h), .scale = scale_, .weights = tableau().b});
+  }
+  if (work_told_) energy_.restore_work(motion_, ends);
   return true;
 }
 

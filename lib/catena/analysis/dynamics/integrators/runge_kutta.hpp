@@ -130,7 +130,7 @@ class RungeKutta final : public Integrator {
   bool finish_step();
   bool watches_energy() const;
   bool tells_work() const;
-  BalancedStep balanced_step(double t, double h, std::span<const double> before, std::span<double> y) const;
+  BalancedEnds balanced_ends(double t, double h, std::span<const double> before, std::span<double> y) const;
   bool balance(double h);
   bool begin_step();
   Length next_length(double limit) const;

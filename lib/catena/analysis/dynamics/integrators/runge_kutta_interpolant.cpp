@@ -105,7 +105,7 @@ void RungeKutta::balance_between(double t, std::span<double> y) {
   if (!equations.factorize(t, Side::after, motion_.q(std::span<const double>(y)))) return;
   equations.project_position(motion_.q(y), 4);
   equations.project_velocity(motion_.qd(y), scale_.rate());
-  energy_.restore_work(motion_, balanced_step(t, t - t_before_, y_before_, y));
+  energy_.restore_work(motion_, balanced_ends(t, t - t_before_, y_before_, y));
 }
 
 void RungeKutta::get_interpolant_ready() {

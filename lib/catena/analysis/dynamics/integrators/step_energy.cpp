@@ -20,7 +20,8 @@ struct StepEndEnergy {
   double kinetic = 0, potential = 0;
 };
 
-// Of the moving masses, and the potential at t, which loads that follow the time change; leaves the evaluator there.
+// Of the moving masses, and the potential at t, elastic contacts included, which loads that follow the time change;
+// leaves the evaluator there.
 StepEndEnergy energy_at(const Motion& motion, double t, Side side, std::span<const double> y) {
   Evaluator& evaluator = motion.equations().evaluator();
   evaluator.set_time(t, side);
@@ -28,6 +29,7 @@ StepEndEnergy energy_at(const Motion& motion, double t, Side side, std::span<con
   const std::vector<double>& mass = motion.equations().masses().mass;
   const std::span<const double> v = motion.qd(y);
   StepEndEnergy energy{.potential = evaluator.potential_energy()};
+  if (const StateLoads* loads = motion.equations().state_loads()) energy.potential += loads->energy();
   for (std::size_t c = 0; c < mass.size(); ++c) energy.kinetic += 0.5 * mass[c] * v[c] * v[c];
   return energy;
 }
@@ -35,26 +37,27 @@ StepEndEnergy energy_at(const Motion& motion, double t, Side side, std::span<con
 // The energy that the errors of the step may change: that which was accepted and that of rounding.
 double explained_by_errors(const Motion& motion, const BalancedStep& step) {
   const std::vector<double>& mass = motion.equations().masses().mass;
-  const std::span<const double> v = motion.qd(std::span<const double>(step.y));
+  const auto& [t, h, y_before, y, error] = step.ends;
+  const std::span<const double> v = motion.qd(std::span<const double>(y));
   const std::span<const double> loads = motion.equations().applied_forces();
   double energy = 0;
   for (std::size_t c = 0; c < mass.size(); ++c) {
-    energy += mass[c] * std::abs(v[c]) * step.scale.velocity_unit(c, step.h, v[c]) +
-              std::abs(loads[c]) * step.scale.position_unit(c, step.h);
+    energy += mass[c] * std::abs(v[c]) * step.scale.velocity_unit(c, h, v[c]) +
+              std::abs(loads[c]) * step.scale.position_unit(c, h);
   }
   return step.errors * energy;
 }
 
 }  // namespace
 
-// What drivers do follows from multipliers, which a singular position leaves open; losses of contacts are not seen
-// here.
+// What drivers do follows from multipliers, which a singular position leaves open; losses of contacts are among the
+// integrals of a motion, and not among the powers of stages here.
 StepEnergy::Tells StepEnergy::of(const Motion& motion) {
   EquationsOfMotion& equations = motion.equations();
-  if (equations.state_loads()) return Tells::nothing;
   const auto& elements = equations.evaluator().model().elements;
   const auto drives = [](const auto& element) { return element.kind == ElementKind::driver; };
-  if (std::none_of(elements.begin(), elements.end(), drives)) return Tells::speed;
+  if (std::none_of(elements.begin(), elements.end(), drives))
+    return equations.state_loads() ? Tells::nothing : Tells::speed;
   return motion.works() > 0 ? Tells::work : Tells::nothing;
 }
 
@@ -72,7 +75,7 @@ bool StepEnergy::watches(double ratio, bool crossing) const {
   return tells_ == Tells::speed && (crossing || ratio < dependence::singular_passage);
 }
 
-bool StepEnergy::tells_work() const { return tells_ == Tells::work; }
+bool StepEnergy::tells_work(const Motion& motion) const { return tells_ == Tells::work && freedoms(motion) == 0; }
 
 int StepEnergy::freedoms(const Motion& motion) const {
   EquationsOfMotion& equations = motion.equations();
@@ -85,7 +88,7 @@ void StepEnergy::note_power(const Motion& motion, std::size_t stage, std::span<c
 }
 
 // u, with the factors of the new point.
-void StepEnergy::find_direction(const Motion& motion, const BalancedStep& step) {
+void StepEnergy::find_direction(const Motion& motion, const BalancedEnds& step) {
   EquationsOfMotion& equations = motion.equations();
   const bool single = freedoms(motion) == 1;
   const std::span<const double> from = motion.qd(single ? std::span<const double>(step.y) : step.error);
@@ -94,10 +97,11 @@ void StepEnergy::find_direction(const Motion& motion, const BalancedStep& step) 
 }
 
 bool StepEnergy::restore(const Motion& motion, const BalancedStep& step) {
-  const double h = step.h;
+  const BalancedEnds& ends = step.ends;
+  const double h = ends.h;
   const Side from = h > 0 ? Side::after : Side::before, to = h > 0 ? Side::before : Side::after;
-  const StepEndEnergy before = energy_at(motion, step.t - h, from, step.y_before);
-  const StepEndEnergy after = energy_at(motion, step.t, to, step.y);
+  const StepEndEnergy before = energy_at(motion, ends.t - h, from, ends.y_before);
+  const StepEndEnergy after = energy_at(motion, ends.t, to, ends.y);
   double work = 0;
   for (const StageTerm& term : step.weights) work += h * term.weight * power_[static_cast<std::size_t>(term.stage)];
   const double missing = before.kinetic + before.potential + work - after.kinetic - after.potential;
@@ -105,9 +109,9 @@ bool StepEnergy::restore(const Motion& motion, const BalancedStep& step) {
   // Potentials of weights may cancel.
   if (!(std::abs(missing) > thresholds::few_roundings * largest)) return true;
   if (!(std::abs(missing) < unexplained * explained_by_errors(motion, step))) return false;
-  find_direction(motion, step);
+  find_direction(motion, ends);
   const std::vector<double>& mass = motion.equations().masses().mass;
-  const std::span<double> v = motion.qd(step.y);
+  const std::span<double> v = motion.qd(ends.y);
   double along = 0, square = 0;
   for (std::size_t c = 0; c < mass.size(); ++c) {
     along += mass[c] * v[c] * direction_[c];
@@ -120,23 +124,28 @@ bool StepEnergy::restore(const Motion& motion, const BalancedStep& step) {
   return true;
 }
 
-void StepEnergy::restore_work(const Motion& motion, const BalancedStep& step) const {
-  if (freedoms(motion) != 0) return;
+void StepEnergy::restore_work(const Motion& motion, const BalancedEnds& step) const {
+  if (!tells_work(motion)) return;
   const double h = step.h;
   const Side from = h > 0 ? Side::after : Side::before, to = h > 0 ? Side::before : Side::after;
   const StepEndEnergy before = energy_at(motion, step.t - h, from, step.y_before);
   const StepEndEnergy after = energy_at(motion, step.t, to, step.y);
   constexpr std::size_t first = ErrorScale::work_of_loads + 1;  // of the drivers' integrals
   const std::size_t offset = 2 * motion.coordinates();
-  const std::span<const double> old = step.y_before.subspan(offset), errors = step.error.subspan(offset);
+  const std::span<const double> old = step.y_before.subspan(offset);
   const std::span<double> work = step.y.subspan(offset);
   const double dissipated = EnergyAccount::dissipated(work) - EnergyAccount::dissipated(old);
   const double supplied = EnergyAccount::supplied(work) - EnergyAccount::supplied(old);
   const double missing = after.kinetic + after.potential + dissipated - before.kinetic - before.potential - supplied;
+  const auto doubt = [&](std::size_t k) {
+    return std::abs(step.error.empty() ? work[k] - old[k] : step.error[offset + k]);
+  };
   double doubts = 0;
-  for (std::size_t k = first; k < work.size(); ++k) doubts += std::abs(errors[k]);
+  for (std::size_t k = first; k < work.size(); ++k) doubts += doubt(k);
   if (!(doubts > 0)) return;
-  for (std::size_t k = first; k < work.size(); ++k) work[k] += missing * std::abs(errors[k]) / doubts;
+  std::vector<double> parts(work.size(), 0.0);
+  for (std::size_t k = first; k < work.size(); ++k) parts[k] = doubt(k) / doubts;
+  for (std::size_t k = first; k < work.size(); ++k) work[k] += missing * parts[k];
 }
 
 }  // namespace catena

@@ -21,7 +21,8 @@
 //
 //   sum dW_k = T1 - T0 + V1 - V0 + dissipated - work of loads
 //
-// What the integrals of their powers miss of it goes to the drivers in proportion to the error estimates of these.
+// What the integrals of their powers miss of it goes to the drivers in proportion to the error estimates of these, or,
+// where there are none, to their work in the step.
 //
 // Symbols: T kinetic, V potential energy in J, M masses, v velocities, h the step in s, b_s weights of its stages, dW_k
 // work of a driver in the step. Source: apps/manual/numerics.md#singular-passages.
@@ -37,12 +38,16 @@
 namespace catena {
 
 /// A step of size h (s) that ends at t; positions and velocities there are on the constraints.
-struct BalancedStep {
+struct BalancedEnds {
   double t = 0, h = 0;
   std::span<const double> y_before;
   std::span<double> y;
-  std::span<const double> error;  ///< the estimate, [q, qd, work]
-  double errors = 0;              ///< of the step and of its rounding, in units of `scale`
+  std::span<const double> error{};  ///< the estimate, [q, qd, work]; empty: none
+};
+
+struct BalancedStep {
+  BalancedEnds ends;
+  double errors = 0;  ///< of the step and of its rounding, in units of `scale`
   const ErrorScale& scale;
   const StageSum& weights;
 };
@@ -59,18 +64,18 @@ class StepEnergy {
 
   /// Whether steps from a place of this pivot ratio are balanced by their speed, if they are projected.
   bool watches(double ratio, bool crossing) const;
-  /// Whether the balance of steps, if they are projected, says what drivers do.
-  bool tells_work() const;
+  /// Whether the balance of steps, if they are projected, says what drivers do: these move all of the mechanism.
+  bool tells_work(const Motion& motion) const;
   /// Power P at a stage, at the evaluator's place, that of y.
   void note_power(const Motion& motion, std::size_t stage, std::span<const double> y);
   /// Balances a step. False: more energy is missing than the error of the step and its rounding explain.
   bool restore(const Motion& motion, const BalancedStep& step);
-  /// Gives drivers the work that the balance of a step leaves them, in step.y, where they move all of the mechanism.
-  void restore_work(const Motion& motion, const BalancedStep& step) const;
+  /// Gives drivers the work that the balance of a step leaves them, in step.y, where it says so.
+  void restore_work(const Motion& motion, const BalancedEnds& step) const;
 
  private:
   int freedoms(const Motion& motion) const;
-  void find_direction(const Motion& motion, const BalancedStep& step);
+  void find_direction(const Motion& motion, const BalancedEnds& step);
 
   std::vector<double> power_, direction_;  // of the stages, W; u
   double weight_ = 0;                      // of all bodies, times the length scale, J
