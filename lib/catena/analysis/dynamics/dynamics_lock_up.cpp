@@ -23,6 +23,17 @@ namespace {
 // How much longer than by its accelerations the way to the dead point may be.
 constexpr double longest_way = 10;
 
+// |qd|^2 / (2 qd . qdd), s; not positive where velocities do not grow.
+double time_by_accelerations(const Evaluator& evaluator, std::span<const double> qd, std::span<const double> qdd) {
+  const auto unit = [&](std::size_t k) { return k % 3 == 2 ? 1 : evaluator.length_scale(); };
+  double product = 0, square = 0;
+  for (std::size_t k = 0; k < 3 * static_cast<std::size_t>(evaluator.plan().moving); ++k) {
+    product += qd[k] / unit(k) * (qdd[k] / unit(k));
+    square += qd[k] / unit(k) * (qd[k] / unit(k));
+  }
+  return square / (2 * product);
+}
+
 // The combination w of rows that velocities grow with, at (t, q); empty where nu has no part in
 // one. S^-1 nu, S = Phi_q M^-1 Phi_q^T, is w but for terms of the square of the sine at which rows depend on each
 // other: columns that vanish there, where a coordinate alone becomes free, need no scale.
@@ -45,11 +56,21 @@ std::vector<double> vanishing_combination(EquationsOfMotion& equations, double t
 // w^T Phi_q = 0 but w^T nu != 0 (apps/manual/kinematics.md#singular-configurations).
 std::optional<SingularPoint> Dynamics::dead_point_ahead() {
   if (plan_->rows == 0) return {};
-  if (const double step = std::exchange(options_.step, 0); step > 0) {
-    // A step of fixed size fails far from the place: shorter ones lead on, no further than it was to go.
+  const bool is_fixed = options_.step > 0;
+  if (is_fixed || method_ == IntegrationMethod::alpha) {
+    // A step of fixed size, or of order 2, fails far from the place: shorter ones of order 8 lead on, no further than
+    // two of its steps, or than a dead point can be.
+    const double now = integrator_->time();
+    const double way = longest_way * time_by_accelerations(evaluator_, integrator_->state().subspan(q_.size()),
+                                                           integrator_->accelerations());
+    const double step = std::exchange(options_.step, 0);
+    const bool second_order = method_ == IntegrationMethod::alpha || method_ == IntegrationMethod::rattle;
+    const IntegrationMethod method = std::exchange(method_, second_order ? IntegrationMethod::rk8 : method_);
     std::unique_ptr<Integrator> shorter = make_integrator(*motion_, run_.grid.last());
     options_.step = step;
-    const double end = std::min({integrator_->time() + step, next_breakpoint(integrator_->time()), run_.grid.last()});
+    method_ = method;
+    const double end = std::min({now + (is_fixed ? 2 * step : way), next_breakpoint(now), run_.grid.last()});
+    if (!(end > now && (is_fixed || std::isfinite(way)))) return {};
     if (!shorter->start(integrator_->time(), integrator_->state())) return {};
     while (shorter->time() < end && shorter->advance(end)) continue;
     if (!(shorter->time() < end)) return {};
@@ -107,13 +128,7 @@ double Dynamics::time_to_dead_point(std::span<const double> w, std::vector<doubl
   const std::span<const double> y = integrator_->state(), qd = y.subspan(n, n);
   std::vector<double> slope(y.size(), 0.0);
   if (!equations_.accelerations(t, Side::after, y.first(n), qd, std::span(slope).subspan(n, n))) return 0;
-  const auto unit = [&](std::size_t k) { return k % 3 == 2 ? 1 : evaluator_.length_scale(); };
-  double product = 0, square = 0;
-  for (std::size_t k = 0; k < 3 * static_cast<std::size_t>(plan_->moving); ++k) {
-    product += qd[k] / unit(k) * (slope[n + k] / unit(k));
-    square += qd[k] / unit(k) * (qd[k] / unit(k));
-  }
-  double rest = square / (2 * product);
+  const double rest = time_by_accelerations(evaluator_, qd, std::span(slope).subspan(n, n));
   if (!(rest > 0) || !(rest < longest)) return 0;
   const auto place = [&](double part) {
     for (std::size_t k = 0; k < n; ++k) q[k] = y[k] + part * 2 * rest * qd[k];
