@@ -1,4 +1,4 @@
-// Where formulas of own columns switch: at every abs, min and max of them.
+// Where formulas of own columns switch: at every abs, min and max of them, and at the ends of tables that hold.
 //
 //   abs(a): s = a        min(a, b), max(a, b): s = +-(a - b)        table(a), held beyond its end e: s = a - e
 //
@@ -23,14 +23,17 @@
 
 namespace catena {
 
-/// The comparisons of one evaluation: how many there were, and the difference that decided number `wanted`.
+/// The comparisons of one evaluation: how many there were, and the difference that decided number `wanted`, or, where
+/// there is a place for them, those that decided all.
 template <class R>
 struct SwitchNotes {
   int wanted = -1, count = 0;
   R difference = R(0.0);
+  std::vector<R>* all = nullptr;
 
   void take(const R& value) {
     if (count++ == wanted) difference = value;
+    if (all) all->push_back(value);
   }
 };
 

@@ -8,6 +8,7 @@
 
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/motion/way_of_motion.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/assembly/length_scale.hpp"
 #include "catena/base/flush_denormals.hpp"
@@ -205,7 +206,12 @@ Report Dynamics::next(RowObserver& observer) {
 
 Report Dynamics::step(RowObserver& observer) {
   const double limit = std::min(next_breakpoint(t_), run_.grid.last());
-  if (!integrator_->advance(law_stretches_ ? std::min(limit, law_stretches_->limit(t_)) : limit)) return stuck();
+  double reach = law_stretches_ ? std::min(limit, law_stretches_->limit(t_)) : limit;
+  // Where drivers move all, a law says nothing of itself in the errors of the motion: its work alone does, at the
+  // stages.
+  if (work_.account && options_.step == 0 && !evaluator_.laws().empty() && freedoms() == 0 && integrator_->rate() > 0)
+    reach = std::min(reach, t_ + thresholds::driven_stretch / integrator_->rate());
+  if (!integrator_->advance(reach)) return stuck();
   const double before = t_;
   t_ = integrator_->time();
   if (attached_.follower) {

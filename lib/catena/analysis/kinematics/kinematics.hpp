@@ -128,6 +128,7 @@ class Kinematics {
   // Work along the motion: kinematics_work.cpp.
   Report start_work();
   double stretch_length(double limit) const;
+  void see_end_of_stretch(bool first, Side inside);
   Report sum_up_stretch(double t, double& error, std::vector<std::string>& warnings);
   Report move_and_sum_up(double t);
 

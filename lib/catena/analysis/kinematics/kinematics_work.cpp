@@ -9,6 +9,8 @@
 
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/run/breakpoints.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 
@@ -49,6 +51,18 @@ double Kinematics::stretch_length(double limit) const {
   return work_.stretch_length(limit, solver_.rate_size(now_.qd), solver_.rate_size(now_.qdd));
 }
 
+// The powers at an end of a stretch as they are in it: functions of time, and with them velocities, may jump there.
+void Kinematics::see_end_of_stretch(bool first, Side inside) {
+  const auto breaks = [&](const TimeFunction<double>& function) { return is_breakpoint(function, now_.t); };
+  const bool jumps = std::any_of(model_->functions.begin(), model_->functions.end(), breaks);
+  if (inside == Side::after || !jumps || now_.on_bridge) return work_.see_end(first, now_.qd);
+  std::vector<double> qd(now_.qd);
+  evaluator_.set_time(now_.t, inside);
+  if (!solver_.solve_velocity(qd, true)) qd = now_.qd;
+  work_.see_end(first, qd);
+  evaluator_.set_time(now_.t);
+}
+
 // One stretch further, to t: the powers inside, then the rates there. `error`: estimate of that of the sums, J. Where
 // friction reverses, what it takes bends, and what the driver gives with it, so that the gap of energies does not show
 // it: such a stretch counts as wrong by the largest loss in it times its length.
@@ -58,6 +72,7 @@ Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::stri
   const std::vector<int> ways = rubs ? ways_of_slips(evaluator_, now_.qd) : std::vector<int>();
   double most_lost = 0;
   work_.begin_stretch(snapshot());
+  see_end_of_stretch(true, t > from ? Side::after : Side::before);
   const auto visit = [&](double instant, const Needs& needs) -> Report {
     Report moved = follow_to(instant);
     std::move(moved.warnings.begin(), moved.warnings.end(), std::back_inserter(warnings));
@@ -75,6 +90,7 @@ Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::stri
     most_lost = std::max(most_lost, reactions_.dissipation());
   }
   if (Report moved = visit(t, {.velocity = true, .acceleration = true}); !moved.ok()) return moved;
+  see_end_of_stretch(false, t > from ? Side::before : Side::after);
   error = work_.stretch_error(t - from, snapshot());
   if (rubs && ways_of_slips(evaluator_, now_.qd) != ways) error = std::max(error, most_lost * std::abs(t - from));
   return {};
@@ -115,7 +131,10 @@ Report Kinematics::move_and_sum_up(double t) {
       }
       const double allowed = work_.allowed_error(snapshot());
       // Repeated in shorter stretches; but not across a singular configuration, which is passed only once.
-      if (error > allowed && work_.can_be_shorter() && stretch_.empty()) {
+      const bool divisible =
+          std::abs(to - from) > thresholds::carried_rounding * std::max(std::abs(from), std::abs(to));
+      const bool poor = error > allowed || work_.skips_switches();
+      if (poor && divisible && work_.can_be_shorter() && stretch_.empty()) {
         if (Report moved = follow_to(from); !moved.ok()) return moved;
         if (Report solved = find_rates({.velocity = true, .acceleration = true}); !solved.ok()) return solved;
         work_.take_back();

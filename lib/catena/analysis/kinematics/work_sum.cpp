@@ -12,15 +12,11 @@
 namespace catena {
 namespace {
 
-// Of a stretch: rad, length scales. The rule is off by h^8 f^(8) 4!^4 / (9 8!^3) of the mean of f: 4e-13 where a power
-// of two periods a turn, f^(8) = 2^8 f, is followed over h = 0.2 rad.
-constexpr double longest_stretch = 0.2;
 // Parts of the energy exchanged so far: the error allowed in a stretch, above which it is repeated in shorter ones; and
 // the total error above which results carry a warning. Both include rounding of energies.
 constexpr double allowed_part = 1e-10, doubtful_error = 1e-6, work_rounding = thresholds::carried_rounding;
-constexpr double shortest_part = 1.0 / 4096;
-// The cubic part of the powers in a stretch, of the largest of them.
-constexpr double roughest = 0.05;
+// Where a law jumps, the shortest stretch is wrong by some half of what it exchanges: 1e-8 rad of the motion.
+constexpr double shortest_part = 1.0 / (1 << 24);
 
 constexpr std::array<double, 4> weights = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
                                            0.17392742256872693};
@@ -35,6 +31,8 @@ void WorkSum::begin(Evaluator& evaluator) {
   power_.resize(account_->size());
   driver_work_.assign(evaluator.model().elements.size(), 0.0);
   cubic_part_.resize(account_->size());
+  evaluator_ = &evaluator;
+  samples_.begin(evaluator);
   exchanged_ = unsure_ = 0;
   part_ = 1;
 }
@@ -54,8 +52,8 @@ double WorkSum::energy_scale(const Snapshot& now) const {
 double WorkSum::stretch_length(double limit, double speed, double gain) const {
   // From rest the rates give no estimate: the whole way is tried first.
   double length = limit;
-  if (speed > 0) length = std::min(length, longest_stretch / speed);
-  if (gain > 0) length = std::min(length, std::sqrt(longest_stretch / gain));
+  if (speed > 0) length = std::min(length, thresholds::driven_stretch / speed);
+  if (gain > 0) length = std::min(length, std::sqrt(thresholds::driven_stretch / gain));
   return part_ * length;
 }
 
@@ -67,9 +65,15 @@ void WorkSum::begin_stretch(const Snapshot& start) {
   largest_power_ = 0;
 }
 
+void WorkSum::see_end(bool first, std::span<const double> qd) {
+  samples_.take(first ? 0 : PowerSamples::places - 1, evaluator_->dissipation(qd), evaluator_->load_power(qd), qd);
+}
+
 void WorkSum::add_point(std::size_t point, double span, std::span<const double> qd, std::span<const double> lambda,
                         double lost) {
   account_->powers(qd, lambda, power_);
+  const std::span<const double> powers(power_);
+  samples_.take(1 + point, EnergyAccount::dissipated(powers), EnergyAccount::of_loads(powers), qd);
   EnergyAccount::dissipated(std::span(power_)) += lost;
   for (std::size_t c = 0; c < work_.size(); ++c) {
     const double part = span * weights[point] * power_[c];
@@ -83,8 +87,12 @@ void WorkSum::add_point(std::size_t point, double span, std::span<const double> 
 double WorkSum::stretch_error(double span, const Snapshot& end) const {
   double rough = 0;
   for (double part : cubic_part_) rough = std::max(rough, std::abs(part));
-  return std::max(std::abs(gap(end) - gap_before_), rough > roughest * largest_power_ ? rough * std::abs(span) : 0.0);
+  return std::max({std::abs(gap(end) - gap_before_), samples_.error(span),
+                   rough > PowerSamples::unresolved * largest_power_ ? rough * std::abs(span) : 0.0});
 }
+
+// To 1/256 of the longest stretch, or 0.8 mrad: a pulse that is a third of that shows itself.
+bool WorkSum::skips_switches() const { return part_ > std::cbrt(shortest_part) && samples_.may_switch(); }
 
 double WorkSum::allowed_error(const Snapshot& end) const {
   return allowed_part * exchanged_ + work_rounding * energy_scale(end);

@@ -7,8 +7,11 @@
 //
 //   gap = T + V - (T0 + V0) - supplied + dissipated
 //
-// Stretches are shortened until the change of the gap in each of them, and the part of a power that four points do not
-// resolve, are below 1e-10 of the energy exchanged. Units: J, W, s. Nothing allocates after begin().
+// What a law does wrong in a sum, drivers do as well, and the gap stays: the integrals of loads and dampers are judged
+// by themselves, too (course/power_samples.hpp). Stretches are shortened until the change of the gap in each of them,
+// the error of those integrals, and the part of a power that four points do not resolve, are below 1e-10 of the energy
+// exchanged; and where a law may switch from one branch to another, to 1/256 at least. Units: J, W, s. Nothing
+// allocates after the first stretch.
 #pragma once
 
 #include <array>
@@ -18,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/kinematics/course/power_samples.hpp"
 #include "catena/analysis/motion/energy_account.hpp"
 #include "catena/columns/snapshot.hpp"
 
@@ -41,12 +45,17 @@ class WorkSum {
   double stretch_length(double limit, double speed, double gain) const;
   /// Begins a stretch at this snapshot: from here on it can be taken back.
   void begin_stretch(const Snapshot& start);
+  /// Looks at the powers at an end of the stretch, `first` the one where it begins: where the evaluator is, at the side
+  /// of the instant that lies in the stretch.
+  void see_end(bool first, std::span<const double> qd);
   /// Adds the powers at the point of this number in a stretch of the length `span` (s, negative backwards in time);
   /// `lost`: by friction.
   void add_point(std::size_t point, double span, std::span<const double> qd, std::span<const double> lambda,
                  double lost);
   /// Estimate of the error, J, of the stretch that ends with this snapshot.
   double stretch_error(double span, const Snapshot& end) const;
+  /// Whether a law may switch in the stretch, which is longer than such stretches may be.
+  bool skips_switches() const;
   /// The error, J, above which a stretch that ends with this snapshot is repeated in shorter ones.
   double allowed_error(const Snapshot& end) const;
   bool can_be_shorter() const;
@@ -69,6 +78,8 @@ class WorkSum {
   double energy_scale(const Snapshot& now) const;
 
   std::optional<EnergyAccount> account_;  // while work is summed up
+  Evaluator* evaluator_ = nullptr;
+  PowerSamples samples_;
   std::vector<double> work_, power_, cubic_part_, driver_work_, work_before_;
   double initial_energy_ = 0;
   double exchanged_ = 0, exchanged_before_ = 0;

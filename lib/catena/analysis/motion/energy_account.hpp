@@ -31,6 +31,7 @@ class EnergyAccount {
 
   static double dissipated(std::span<const double> work) { return work[0]; }
   static double& dissipated(std::span<double> work) { return work[0]; }
+  static double of_loads(std::span<const double> work) { return work[1]; }
   /// Of loads and drivers together.
   static double supplied(std::span<const double> work);
   /// Scatters the drivers' work to `by_element`, which has one entry an element of the model.
