@@ -13,7 +13,8 @@ void per_body(benchmark::State& state, int bodies) {
 
 void jacobian(benchmark::State& state) {
   const auto model = bench::chain(static_cast<int>(state.range(0)));
-  catena::Evaluator evaluator(catena::Plan::make(*model), *model);
+  catena::EvaluationWork work;
+  catena::Evaluator evaluator(catena::Plan::make(*model), *model, work);
   const std::vector<double> q = evaluator.given_configuration();
   std::vector<double> values(static_cast<std::size_t>(evaluator.plan().trash_slot()) + 1);
   evaluator.start_jacobian(values);

@@ -103,7 +103,8 @@ void print_acceleration_costs() {
              "bodies", "ns");
   for (int n : {100, 1000, 10000, 100000, 1000000}) {
     const auto model = chain(n);
-    Evaluator evaluator(Plan::make(*model), *model);
+    EvaluationWork work;
+    Evaluator evaluator(Plan::make(*model), *model, work);
     EquationsOfMotion equations(evaluator);
     if (!equations.use_masses().ok()) continue;
     const std::vector<double> q = evaluator.given_configuration();

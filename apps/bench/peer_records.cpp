@@ -25,7 +25,8 @@ namespace {
 void acceleration() {
   for (int n : {10, 100, 1000, 10000, 100000, 1000000}) {
     const auto model = chain(n);
-    Evaluator evaluator(Plan::make(*model), *model);
+    EvaluationWork work;
+    Evaluator evaluator(Plan::make(*model), *model, work);
     EquationsOfMotion equations(evaluator);
     if (!equations.use_masses().ok()) continue;
     const std::vector<double> q = evaluator.given_configuration();

@@ -66,7 +66,8 @@ Reported inverse_dynamics(const std::shared_ptr<Model>& model) {
 Names ambiguous(const Model& model) {
   PlanOptions options;
   for (std::size_t e = 0; e < model.elements.size(); ++e) options.keep_elements.push_back(static_cast<int>(e));
-  Evaluator evaluator(Plan::make(model, options), model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(model, options), model, work);
   evaluator.set_time(0);
   evaluator.set_configuration(evaluator.given_configuration());
   return ambiguous(evaluator);
@@ -205,7 +206,8 @@ TEST(AmbiguousReactions, OfRandomMechanismsAreThoseInTheNullSpace) {
       }
     }
     const auto model = build(recipe, {});
-    Evaluator evaluator(Plan::make(*model), *model);
+    EvaluationWork work;
+    Evaluator evaluator(Plan::make(*model), *model, work);
     evaluator.set_time(0);
     evaluator.set_configuration(evaluator.given_configuration());
     const auto space = left_null_space(evaluator);

@@ -15,7 +15,10 @@ namespace {
 /// A model in the state that its sketch gives, and what assembly makes of it.
 struct Assembled {
   explicit Assembled(std::shared_ptr<const Model> m)
-      : model(std::move(m)), plan(Plan::make(*model)), evaluator(plan, *model), given(evaluator.given_configuration()) {
+      : model(std::move(m)),
+        plan(Plan::make(*model)),
+        evaluator(plan, *model, work),
+        given(evaluator.given_configuration()) {
     q = given;
     before = residual(given);
     outcome = Assembler(evaluator).assemble(q);
@@ -42,6 +45,7 @@ struct Assembled {
 
   std::shared_ptr<const Model> model;
   std::shared_ptr<const Plan> plan;
+  EvaluationWork work;
   Evaluator evaluator;
   std::vector<double> given, q;
   double before = 0, after = 0;

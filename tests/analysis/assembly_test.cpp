@@ -21,12 +21,13 @@ constexpr double pi = std::numbers::pi;
 
 /// What assembly makes of a model.
 struct Attempt {
-  explicit Attempt(const Model& model) : plan(Plan::make(model)), evaluator(plan, model) {
+  explicit Attempt(const Model& model) : plan(Plan::make(model)), evaluator(plan, model, work) {
     q = evaluator.given_configuration();
     outcome = Assembler(evaluator).assemble(q);
     for (const Misfit& misfit : outcome.misfits) names.push_back(std::string(model.element_name(misfit.element)));
   }
   std::shared_ptr<const Plan> plan;
+  EvaluationWork work;
   Evaluator evaluator;
   std::vector<double> q;
   AssemblyOutcome outcome;

@@ -119,13 +119,14 @@ TEST(BadArguments, OfAnalyses) {
   EXPECT_THROWN(std::invalid_argument, Kinematics(crank(), {}, {.branch = -1}), "branch");
   EXPECT_THROWN(std::invalid_argument, Equilibrium(crank(), {}, {.tolerance = 0}), "tolerance");
   EXPECT_THROWN(std::invalid_argument, Equilibrium(crank(), {}, {.find = 0}), "find");
-  EXPECT_THROWN(std::invalid_argument, Evaluator(nullptr, *crank()), "null");
+  EvaluationWork work;
+  EXPECT_THROWN(std::invalid_argument, Evaluator(nullptr, *crank(), work), "null");
   EXPECT_THROWN(std::out_of_range, Kinematics(crank(), {.keep_elements = {7}}), "no element number 7");
   EXPECT_THROWN(std::out_of_range, Kinematics(crank(), {.released_elements = {-1}}), "-1");
   const auto model = crank();
   auto other = crank();
   other->add_body("more", {});
-  EXPECT_THROWN(std::invalid_argument, Evaluator(Plan::make(*model), *other), "2 bodies");
+  EXPECT_THROWN(std::invalid_argument, Evaluator(Plan::make(*model), *other, work), "2 bodies");
   Equilibrium equilibrium(crank());
   EXPECT_THROWN(std::invalid_argument, equilibrium.set_model(other), "2 bodies");
   EXPECT_THROWN(std::invalid_argument, equilibrium.set_model(nullptr), "null");

@@ -30,7 +30,8 @@ TEST_P(IpoptCatenary, FindsTheHorizontalForceByItself) {
     if (count == 1000 && start != ChainStart::sag && start != ChainStart::zigzag) continue;
     const auto model = testing::hanging_chain(count, start);
     const auto plan = Plan::make(*model);
-    Evaluator evaluator(plan, *model);
+    EvaluationWork work;
+    Evaluator evaluator(plan, *model, work);
     evaluator.set_time(0);
     StaticSystem system(evaluator);
     std::vector<double> q = evaluator.given_configuration(), lambda(static_cast<std::size_t>(plan->rows));
@@ -103,7 +104,8 @@ TEST(NloptEquilibrium, NeedsNoDerivatives) {
   if (!nlopt_is_built_in()) GTEST_SKIP() << "built without NLopt";
   const auto model = testing::inverted_pendulum(2, 0.3);
   const auto plan = Plan::make(*model);
-  Evaluator evaluator(plan, *model);
+  EvaluationWork work;
+  Evaluator evaluator(plan, *model, work);
   evaluator.set_time(0);
   StaticSystem system(evaluator);
   std::vector<double> q = evaluator.given_configuration(), lambda(static_cast<std::size_t>(plan->rows));

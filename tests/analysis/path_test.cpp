@@ -66,7 +66,8 @@ TEST(PathSystem, SaysNothingOfStabilityWhereTheSpectrumIsNotFound) {
     return std::shared_ptr<const Model>(model);
   };
   const std::shared_ptr<const Model> first = model_at(1);
-  Evaluator evaluator(Plan::make(*first), *first);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(*first), *first, work);
   StaticSystem system(evaluator);
   PathSystem path(system, model_at, 1, 1);
   PathPoint x{evaluator.given_configuration(), std::vector<double>(2, 0.0), 1};

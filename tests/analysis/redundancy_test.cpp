@@ -18,7 +18,7 @@ namespace {
 using Names = std::set<std::string>;
 
 struct Check {
-  explicit Check(const Model& m) : model(m), plan(Plan::make(model)), evaluator(plan, model) {
+  explicit Check(const Model& m) : model(m), plan(Plan::make(model)), evaluator(plan, model, work) {
     evaluator.set_time(0);
     report = analyse_mobility(evaluator, evaluator.given_configuration());
   }
@@ -33,6 +33,7 @@ struct Check {
 
   const Model& model;
   std::shared_ptr<const Plan> plan;
+  EvaluationWork work;
   Evaluator evaluator;
   MobilityReport report;
 };

@@ -84,7 +84,8 @@ Row random_row(unsigned seed) {
 TEST(StaticTurns, AreTakenBackTogetherAndChangeNothing) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     const Row row = random_row(seed);
-    Evaluator evaluator(Plan::make(*row.model), *row.model);
+    EvaluationWork work;
+    Evaluator evaluator(Plan::make(*row.model), *row.model, work);
     StaticSystem system(evaluator);
     const Plan& plan = system.plan();
     std::mt19937 random(seed);
@@ -127,7 +128,8 @@ TEST(StaticTurns, AreTakenBackTogetherAndChangeNothing) {
 
 TEST(StaticTurns, AnglesWithinHalfATurnStay) {
   const Row row = random_row(5);
-  Evaluator evaluator(Plan::make(*row.model), *row.model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(*row.model), *row.model, work);
   StaticSystem system(evaluator);
   const std::vector<double> start = evaluator.given_configuration();
   std::vector<double> q = start;

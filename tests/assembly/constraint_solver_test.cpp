@@ -47,7 +47,8 @@ struct Linkage {
     for (int b = 0; b < bodies; ++b) join(b == 0 ? ground : static_cast<int>(engine() % static_cast<unsigned>(b)), b);
     for (int loop = 0; loop < (bodies - 1) / 2; ++loop) join(ground, bodies - 1 - loop);
     plan = Plan::make(model);
-    Evaluator evaluator(plan, model);
+    EvaluationWork work;
+    Evaluator evaluator(plan, model, work);
     evaluator.set_configuration(evaluator.given_configuration());
     values.resize(at(plan->trash_slot()) + 1);
     evaluator.start_jacobian(values);

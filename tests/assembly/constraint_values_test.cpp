@@ -70,7 +70,8 @@ struct Values {
 
 /// Everything at the given configuration displaced by a little.
 Values evaluate(const Model& model, double size) {
-  Evaluator evaluator(Plan::make(model), model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(model), model, work);
   const Plan& plan = evaluator.plan();
   std::vector<double> q = evaluator.given_configuration(), qd(q.size());
   for (int b = 0; b < plan.moving; ++b) {
@@ -183,7 +184,8 @@ TEST(ConstraintValues, EveryScalarConstraintIsDriven) {
   model.add_driver("co", Coupler<double>{p, q}, a, b, c);
   model.add_driver("di", Displacement<double>{p, q, {1, 2}}, a, b, c);
   model.add_driver("sl", Slot<double>{p, q, {1, 2}}, a, b, c);
-  Evaluator evaluator(Plan::make(model), model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(model), model, work);
   evaluator.set_configuration(evaluator.given_configuration());
   const auto rows = static_cast<std::size_t>(evaluator.plan().rows);
   ASSERT_EQ(rows, 11u);

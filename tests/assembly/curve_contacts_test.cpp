@@ -22,6 +22,7 @@ struct RandomContacts {
   std::mt19937 random;
   Model model;
   std::vector<int> released;
+  EvaluationWork work;
 
   explicit RandomContacts(unsigned seed) : random(seed) {
     const int a = seed % 3 == 0 ? ground : add_body("a"), b = add_body("b");
@@ -58,7 +59,7 @@ struct RandomContacts {
     return Curve<double>::spline(points, SplineEnd::periodic);
   }
   Evaluator evaluator() {
-    return Evaluator(Plan::make(model, {.released_elements = released, .one_sided = true}), model);
+    return Evaluator(Plan::make(model, {.released_elements = released, .one_sided = true}), model, work);
   }
   /// Bodies turned by up to `angle` and moved a little.
   std::vector<double> moved(const std::vector<double>& q, double angle) {
@@ -119,7 +120,7 @@ TEST(CurveContacts, RejectedTrialsLeaveNoTrace) {
     Evaluator tried = scene.evaluator();
     const std::vector<double> q = scene.moved(tried.given_configuration(), 0.2), next = scene.moved(q, 0.2);
     tried.set_configuration(q);
-    Evaluator stayed = tried;
+    Evaluator stayed(tried, scene.work);
     const std::vector<CurvePlace> places = tried.curve_places();
     for (int trial = 0; trial < 3; ++trial) {
       tried.set_configuration(scene.moved(q, 1.5));
@@ -138,13 +139,13 @@ TEST(CurveContacts, RejectedTrialsLeaveNoTrace) {
 TEST(CurveContacts, PlacesHoldForTheConfigurationThatIsSet) {
   for (unsigned seed = 0; seed < seeds; ++seed) {
     RandomContacts scene(seed);
-    Evaluator before = scene.evaluator(), after = before;
+    Evaluator before = scene.evaluator(), away(before, scene.work);
     const std::vector<double> q = scene.moved(before.given_configuration(), 0.2);
-    after.set_configuration(scene.moved(q, 1.5));
-    const std::vector<CurvePlace> elsewhere = after.curve_places();
+    away.set_configuration(scene.moved(q, 1.5));
+    const std::vector<CurvePlace> elsewhere = away.curve_places();
     before.go_to_curve_places(elsewhere);
     before.set_configuration(q);
-    after = scene.evaluator();
+    Evaluator after = scene.evaluator();
     after.set_configuration(q);
     after.go_to_curve_places(elsewhere);
     EXPECT_TRUE(same_bits(Said(before).numbers, Said(after).numbers)) << seed;
@@ -156,7 +157,7 @@ TEST(CurveContacts, TheOrderOfEvaluationsDoesNotMatter) {
     RandomContacts scene(seed);
     Evaluator first = scene.evaluator();
     first.set_configuration(scene.moved(first.given_configuration(), 0.3));
-    Evaluator second = first;
+    Evaluator second(first, scene.work);
     const std::vector<double> once = Said(first).numbers, again = Said(first).numbers;
     const std::vector<double> alone = Said::looked_at(second);
     EXPECT_TRUE(same_bits(once, again)) << seed;
@@ -194,11 +195,13 @@ TEST(CurveContacts, ThreadsShareModelPlanAndEvaluator) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     RandomContacts scene(seed);
     const Evaluator given = scene.evaluator();
-    Evaluator shared = given;
+    Evaluator shared(given, scene.work);
     const std::vector<double> start = shared.given_configuration();
     std::vector<std::vector<double>> way;
     for (int k = 0; k < 30; ++k) way.push_back(scene.moved(start, 0.5));
-    const auto travel = [&](Evaluator own) {
+    const auto travel = [&](const Evaluator& from) {
+      EvaluationWork work;
+      Evaluator own(from, work);
       std::vector<double> numbers;
       for (const std::vector<double>& q : way) {
         own.set_configuration(q);

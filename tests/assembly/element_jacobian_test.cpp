@@ -48,6 +48,7 @@ int add_body(Model& model, const char* name, const Pose& p) {
 template <class E>
 struct Evaluated {
   Model model;
+  EvaluationWork work;
   std::unique_ptr<Evaluator> evaluator;
 
   /// bodies: which of a, b take part; the other one's side is the ground.
@@ -55,7 +56,7 @@ struct Evaluated {
     const int a = add_body(model, "a", pose_a), b = add_body(model, "b", pose_b);
     model.add("", example<E>(), body_i ? a : ground, body_j ? b : ground);
     // A weld to the ground would be eliminated if its reaction were not asked for.
-    evaluator = std::make_unique<Evaluator>(Plan::make(model, {.keep_elements = {0}, .one_sided = true}), model);
+    evaluator = std::make_unique<Evaluator>(Plan::make(model, {.keep_elements = {0}, .one_sided = true}), model, work);
     evaluator->set_configuration(evaluator->given_configuration());
   }
 };

@@ -32,7 +32,7 @@ constexpr const char* text = R"--({"catena": 1, "gravity": [0, -9],
 class LawStiffness : public ::testing::Test {
  protected:
   void SetUp() override {
-    evaluator = testing::evaluator_of(text, model);
+    evaluator = testing::evaluator_of(text, model, work);
     ASSERT_TRUE(evaluator);
     n = static_cast<std::size_t>(evaluator->plan().coordinates());
     moving = static_cast<std::size_t>(3 * evaluator->plan().moving);
@@ -45,6 +45,7 @@ class LawStiffness : public ::testing::Test {
   }
 
   Model model;
+  EvaluationWork work;
   std::unique_ptr<Evaluator> evaluator;
   std::size_t n = 0, moving = 0;
 };

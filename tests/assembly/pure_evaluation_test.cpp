@@ -19,9 +19,10 @@ namespace {
 struct RandomScene {
   std::mt19937 random;
   Model model;
+  EvaluationWork work;
   std::unique_ptr<Evaluator> evaluator;
 
-  explicit RandomScene(unsigned seed) : random(seed) { evaluator = evaluator_of(text(), model); }
+  explicit RandomScene(unsigned seed) : random(seed) { evaluator = evaluator_of(text(), model, work); }
 
   double between(double low, double high) { return low + (high - low) * (random() / 4294967296.0); }
   std::string number(double low, double high) { return std::to_string(between(low, high)); }

@@ -103,11 +103,14 @@ struct RandomRope {
 };
 
 struct Evaluated {
+  EvaluationWork work;
   Evaluator evaluator;
   std::vector<double> q, qd;
 
   explicit Evaluated(RandomRope& rope)
-      : evaluator(Plan::make(rope.model, {.one_sided = true}), rope.model), q(evaluator.given_configuration()), qd(q) {
+      : evaluator(Plan::make(rope.model, {.one_sided = true}), rope.model, work),
+        q(evaluator.given_configuration()),
+        qd(q) {
     for (int c = 0; c < 3 * evaluator.plan().moving; ++c) {
       q[at(c)] += rope.random(-0.05, 0.05);
       qd[at(c)] = rope.random(-1, 1);
@@ -274,8 +277,9 @@ TEST(RopeRows, TieBodiesAcrossTheGround) {
     ASSERT_EQ(groups.size(), 2u);
     EXPECT_EQ(groups[1], (std::vector<int>{1, 2}));
     const ModelPart part = part_of(model, groups[1]);
-    Evaluator whole(Plan::make(model, {.one_sided = true}), model);
-    Evaluator alone(Plan::make(part.model, {.one_sided = true}), part.model);
+    EvaluationWork work;
+    Evaluator whole(Plan::make(model, {.one_sided = true}), model, work);
+    Evaluator alone(Plan::make(part.model, {.one_sided = true}), part.model, work);
     EXPECT_EQ(whole.plan().islands, k == 0 ? 2 : 3);
     if (k > 0) continue;
     ASSERT_EQ(alone.plan().rows, 1);

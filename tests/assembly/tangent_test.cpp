@@ -43,7 +43,7 @@ class TangentTest : public ::testing::Test {
   void build(const char* added) {
     std::string text = mechanism;
     text.replace(text.find("WITHOUT_ENERGY"), 14, added);
-    evaluator = testing::evaluator_of(text, model);
+    evaluator = testing::evaluator_of(text, model, work);
     ASSERT_TRUE(evaluator);
     columns = static_cast<std::size_t>(evaluator->plan().columns);
     rows = static_cast<std::size_t>(evaluator->plan().rows);
@@ -90,6 +90,7 @@ class TangentTest : public ::testing::Test {
   }
 
   Model model;
+  EvaluationWork work;
   std::unique_ptr<Evaluator> evaluator;
   std::size_t columns = 0, rows = 0;
   std::mt19937 engine{5};

@@ -116,7 +116,8 @@ TEST(Reaction, OfGearsIsAForceAtThePitchPoint) {
       model.add_body("a", BodyValues{.position = {1.0, 2.0}, .angle = 0.3});
       model.add_body("b", BodyValues{.position = Vec2<double>{1.0, 2.0} + distance * along, .angle = -0.8});
       model.add("G", Gear<double>{{}, {}, 0.3, radius_j, internal}, 0, 1);
-      Evaluator evaluator(Plan::make(model), model);
+      EvaluationWork work;
+      Evaluator evaluator(Plan::make(model), model, work);
       const std::vector<double> q = evaluator.given_configuration(), lambda{2.5};
       evaluator.set_configuration(q);
       Snapshot s{evaluator};

@@ -108,7 +108,8 @@ TEST(Spring, WhereTheEndsMeetTheDirectionIsLostAndNothingIsMadeUp) {
   Model model;
   model.add_body("b", BodyValues{});
   model.add_force("S", SpringDamper<double>{{}, {}, 30, 4, 0.5}, ground, 0);
-  Evaluator evaluator(Plan::make(model), model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(model), model, work);
   const std::vector<double> q = evaluator.given_configuration();
   std::vector<double> qd(q.size(), 0.0);
   qd[0] = 1;

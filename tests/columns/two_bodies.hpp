@@ -26,6 +26,7 @@ inline constexpr ColumnSources everything{
 struct TwoBodies {
   Model model;
   std::shared_ptr<const Plan> plan;
+  EvaluationWork work;
   std::unique_ptr<Evaluator> evaluator;
   std::vector<double> q, qd, qdd, lambda;
   std::vector<double> driver_work;
@@ -56,7 +57,7 @@ struct TwoBodies {
 
   void make_plan(const PlanOptions& options = {}) {
     plan = Plan::make(model, options);
-    evaluator = std::make_unique<Evaluator>(plan, model);
+    evaluator = std::make_unique<Evaluator>(plan, model, work);
     q = evaluator->given_configuration();
     qd.assign(q.size(), 0.0);
     qdd = qd;
@@ -105,7 +106,7 @@ struct TwoBodies {
         lambda(now.lambda),
         driver_work(now.driver_work),
         t(now.t + dt) {
-    evaluator = std::make_unique<Evaluator>(plan, model);
+    evaluator = std::make_unique<Evaluator>(plan, model, work);
     for (std::size_t k = 0; k < q.size(); ++k) {
       q[k] += qd[k] * dt + qdd[k] * dt * dt / 2;
       qd[k] += qdd[k] * dt;

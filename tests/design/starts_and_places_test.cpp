@@ -178,7 +178,8 @@ struct Falling {
   SceneModels models{*scene, 1000};
   std::shared_ptr<const Model> model = models.model(scene->parameters, {});
   std::shared_ptr<const Plan> plan = Plan::make(*model);
-  Evaluator evaluator{plan, *model};
+  EvaluationWork work;
+  Evaluator evaluator{plan, *model, work};
 };
 
 TEST(MissingDerivatives, OfAMotionThatCannotBeLookedAtAreNotMadeUp) {

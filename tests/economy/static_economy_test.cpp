@@ -33,7 +33,8 @@ TEST(StaticEconomy, OneFactorizationForMultipliersOneAnIterationAndOneForTheCert
 
 TEST(StaticEconomy, TheCertificateTakesOneFactorization) {
   const auto model = testing::hanging_chain(300, ChainStart::sag);
-  Evaluator evaluator(Plan::make(*model), *model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(*model), *model, work);
   StaticSystem system(evaluator);
   std::vector<double> q = evaluator.given_configuration();
   std::vector<double> lambda(static_cast<std::size_t>(system.plan().rows));
@@ -47,7 +48,8 @@ TEST(StaticEconomy, TheCertificateTakesOneFactorization) {
 
 TEST(StaticEconomy, IterationsDoNotAllocate) {
   const auto model = testing::hanging_chain(300, ChainStart::zigzag);
-  Evaluator evaluator(Plan::make(*model), *model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(*model), *model, work);
   StaticSystem system(evaluator);
   const auto allocations_of = [&](int iterations) {
     std::vector<double> q = evaluator.given_configuration();

@@ -82,7 +82,8 @@ TEST(CustomForce, ActsAsTheSpringItImitates) {
   std::array<std::array<double, 36>, 2> stiffness{};
   for (std::size_t k = 0; k < 2; ++k) {
     const Model& model = k == 0 ? by_hand : built_in;
-    Evaluator evaluator(Plan::make(model), model);
+    EvaluationWork work;
+    Evaluator evaluator(Plan::make(model), model, work);
     evaluator.set_time(0.7);
     evaluator.set_configuration(evaluator.given_configuration());
     Q[k].resize(9);

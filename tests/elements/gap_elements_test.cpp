@@ -18,6 +18,7 @@ constexpr double step = 1e-6;
 // Two bodies and one gap between them.
 struct Pair {
   Model model;
+  EvaluationWork work;
   std::unique_ptr<Evaluator> evaluator;
   std::vector<double> q;
 
@@ -26,7 +27,7 @@ struct Pair {
     model.add_body("a", {.position = {0.4, -0.3}, .angle = 0.6});
     model.add_body("b", {.position = {1.1, 0.9}, .angle = -0.8});
     model.add("gap", gap, 0, 1);
-    evaluator = std::make_unique<Evaluator>(Plan::make(model, {.one_sided = true}), model);
+    evaluator = std::make_unique<Evaluator>(Plan::make(model, {.one_sided = true}), model, work);
     q = evaluator->given_configuration();
     evaluator->set_configuration(q);
   }
@@ -222,7 +223,8 @@ TEST(GapElements, RowsThatAreLeftOutAreZero) {
   model.add_body("b", {.position = {2, 1}});
   model.add("", Cable<double>{{}, {0.1, 0.2}, 1}, ground, 0);
   model.add("", Cable<double>{{0.3, 0.2}, {0.1, -0.4}, 2}, 0, 1);
-  Evaluator evaluator(Plan::make(model, {.one_sided = true}), model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(model, {.one_sided = true}), model, work);
   evaluator.set_configuration(evaluator.given_configuration());
   const Plan& plan = evaluator.plan();
   std::vector<double> values(static_cast<std::size_t>(plan.trash_slot()) + 1), phi(2);

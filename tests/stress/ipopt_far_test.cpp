@@ -19,7 +19,8 @@ TEST_P(IpoptFromAfar, EndsInTheCatenary) {
   const double tension = testing::reference_values("discrete_catenary").at("N1000").at("horizontal_tension_H");
   const auto model = testing::hanging_chain(1000, GetParam());
   const auto plan = Plan::make(*model);
-  Evaluator evaluator(plan, *model);
+  EvaluationWork work;
+  Evaluator evaluator(plan, *model, work);
   evaluator.set_time(0);
   StaticSystem system(evaluator);
   std::vector<double> q = evaluator.given_configuration(), lambda(static_cast<std::size_t>(plan->rows));

@@ -18,6 +18,7 @@ struct ChainKernel {
 
   ExactChain exact;
   std::shared_ptr<catena::Model> model;
+  catena::EvaluationWork work;
   catena::Evaluator evaluator;
   std::vector<double> q, qd;  ///< plan order
 };

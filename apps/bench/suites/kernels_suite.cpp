@@ -113,7 +113,7 @@ void factorization(Bench& bench, int dyads, const char* name, Kernel kernel) {
 ChainKernel::ChainKernel(int rods)
     : exact(rods),
       model(chain(rods)),
-      evaluator(Plan::make(*model), *model),
+      evaluator(Plan::make(*model), *model, work),
       q(evaluator.given_configuration()),
       qd(q.size()) {
   const Plan& plan = evaluator.plan();

@@ -6,7 +6,7 @@
 //
 // Nothing is remembered between calls: what is evaluated follows from the plan, the numbers of the model and the pose,
 // to the last bit. One object may be used by several threads at once, each with poses of its own. Evaluator
-// (evaluate.hpp) is these equations with a pose and counters of its own.
+// (evaluate.hpp) is these equations with a pose of its own.
 //
 // q, qd, qdd hold three coordinates a body in plan order and three zeros for the ground (plan.coordinates() in all);
 // positions are relative to the body's origin (see plan.hpp). The sizes of spans are not checked. Evaluation does not

@@ -1,12 +1,13 @@
-// Evaluation at a pose that is kept: equations of one model (equations.hpp), the pose that was set last, and
-// counts of what was evaluated. What analyses hold.
+// Evaluation at a pose that is kept: equations of one model (equations.hpp) and the pose that was set last. What
+// analyses hold.
 //
 //   set_time(t)            functions of time, once a t             -> c, c', c''
 //   set_configuration(q)   trigonometry, once a body               -> frames
-//   phi, jacobian, nu, gamma                                       -> spans, in place
+//   phi, jacobian, nu, gamma                                       -> spans, in place; const
 //
-// Every value is that of Equations at pose(): a function of plan, model and pose alone. Nothing here allocates after
-// construction. One object a thread; the plan is shared.
+// Every value is that of Equations at pose(): a function of plan, model and pose alone. To evaluate changes nothing
+// here: what was evaluated is counted in the caller's EvaluationWork, which outlives the evaluator, and of which each
+// thread has its own. Nothing allocates after construction. The plan is shared.
 #pragma once
 
 #include <algorithm>
@@ -21,11 +22,26 @@
 
 namespace catena {
 
+/// What evaluations write beside their results.
+struct EvaluationWork {
+  Counters counters = {};
+  std::vector<double> laws = {};  ///< values of the laws of state where forces were evaluated last
+};
+
 class Evaluator : public Equations {
  public:
   /// As Equations, at its given pose.
-  Evaluator(std::shared_ptr<const Plan> plan, const Model& model)
-      : Equations(std::move(plan), model), pose_(given_pose()), laws_now_(laws().size(), 0.0) {}
+  Evaluator(std::shared_ptr<const Plan> plan, const Model& model, EvaluationWork& work)
+      : Equations(std::move(plan), model), counters(work.counters), pose_(given_pose()), laws_now_(work.laws) {
+    laws_now_.assign(laws().size(), 0.0);
+  }
+  /// The same equations at the same pose, with work of its own.
+  Evaluator(const Evaluator& other, EvaluationWork& work)
+      : Equations(other), counters(work.counters), trace(other.trace), pose_(other.pose_), laws_now_(work.laws) {
+    laws_now_.assign(laws().size(), 0.0);
+  }
+  Evaluator(const Evaluator&) = delete;
+  Evaluator& operator=(const Evaluator&) = delete;
 
   const Pose& pose() const { return pose_; }
   double time() const { return pose_.time; }
@@ -65,35 +81,35 @@ class Evaluator : public Equations {
   void go_to_curve_places(std::span<const CurvePlace> places) { Equations::go_to_curve_places(pose_, places); }
   void go_to_given_curve_places() { Equations::go_to_given_curve_places(pose_); }
 
-  void phi(std::span<double> out) {
+  void phi(std::span<double> out) const {
     ++counters.phis;
     Equations::phi(pose_, out);
   }
-  void jacobian(std::span<double> values) {
+  void jacobian(std::span<double> values) const {
     ++counters.jacobians;
     Equations::jacobian(pose_, values);
   }
-  void nu(std::span<double> out) {
+  void nu(std::span<double> out) const {
     ++counters.nus;
     Equations::nu(pose_, out);
   }
-  void gamma(std::span<const double> qd, std::span<double> out) {
+  void gamma(std::span<const double> qd, std::span<double> out) const {
     ++counters.gammas;
     Equations::gamma(pose_, qd, out);
   }
-  void applied_forces(std::span<const double> qd, std::span<double> Q) {
+  void applied_forces(std::span<const double> qd, std::span<double> Q) const {
     ++counters.forces;
     Equations::applied_forces(read_laws(qd), Q);
   }
   void add_hessians(std::span<const double> lambda, Curvature curvature, const HessianSlots& slots,
-                    std::span<double> values) {
+                    std::span<double> values) const {
     ++counters.hessians;
     Equations::add_hessians(read_laws({}), lambda, curvature, slots, values);
   }
 
   double potential_energy() const { return Equations::potential_energy(pose_); }
   double dissipation(std::span<const double> qd) const { return Equations::dissipation(moving(qd)); }
-  double load_power(std::span<const double> qd) { return Equations::load_power(read_laws(qd)); }
+  double load_power(std::span<const double> qd) const { return Equations::load_power(read_laws(qd)); }
   double law_value(int law, std::span<const double> qd) const { return Equations::law_value(pose_, law, qd); }
   std::array<double, 6> law_gradient(int law, int body, std::span<const double> qd) const {
     return Equations::law_gradient(pose_, law, body, qd);
@@ -104,7 +120,7 @@ class Evaluator : public Equations {
     return Equations::left_table(pose_, law, qd, where);
   }
   template <class F>
-  void visit_stiffness(std::span<const double> qd, F&& f) {
+  void visit_stiffness(std::span<const double> qd, F&& f) const {
     Equations::visit_stiffness(read_laws(qd), f);
   }
   template <class F>
@@ -125,22 +141,23 @@ class Evaluator : public Equations {
   CurvePlace contact(int element) const { return Equations::contact(pose_, element); }
   Taylor<double> element_value(int element) const { return Equations::element_value(pose_, element); }
 
-  Counters counters;
+  Counters& counters;                     ///< the caller's
   const IterationTrace* trace = nullptr;  ///< told of iterations for a configuration; may be none
 
  private:
   MovingPose moving(std::span<const double> qd) const { return {pose_, qd.empty() ? nullptr : qd.data()}; }
   /// The same with the laws' values there.
-  MovingPose read_laws(std::span<const double> qd) {
+  MovingPose read_laws(std::span<const double> qd) const {
     MovingPose at = moving(qd);
     if (laws_now_.empty()) return at;
+    laws_now_.resize(laws().size());
     law_values(pose_, qd, laws_now_);
     at.laws = laws_now_.data();
     return at;
   }
 
   Pose pose_;
-  std::vector<double> laws_now_;  // values of the laws where forces were evaluated last
+  std::vector<double>& laws_now_;  // the caller's; values where forces were evaluated last
 };
 
 class Evaluator::TimeLimit {

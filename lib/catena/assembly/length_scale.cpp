@@ -60,7 +60,7 @@ double mean_curve_size(const Model& model) {
   };
   for_each_list(model.constraints, [&](const auto& list, int) {
     using E = ElementOf<decltype(list)>;
-    if constexpr (SearchesCurve<E>) {
+    if constexpr (HasCurve<E>) {
       for (const auto& entry : list) {
         const auto visit = [&](const auto& field) {
           if constexpr (std::is_same_v<std::remove_cvref_t<decltype(entry.element.*field.member)>, BodyCurve<double>>)
@@ -88,7 +88,7 @@ double given_gap(const Model& model, const ElementEntry<E, double>& entry) {
   const auto frames = given_frames<E>(model, entry.i, entry.j);
   const auto &i = frames[0], &j = frames[1];
   double gap = 0, from = 0;
-  if constexpr (SearchesCurve<E>) {
+  if constexpr (HasCurve<E>) {
     const CurvePlace place = entry.element.place();
     const Vec2<double> point = i.to_local(j.point(entry.element.s_j) - i.origin());
     gap = entry.element.measure(i, j, place);
@@ -115,7 +115,7 @@ double size_of_gaps(const Model& model) {
         visit_points(entry, [&](const Vec2<double>& local, int body) {
           // Where a curve is fixed in the ground, it has no point there.
           if (body >= 0) return take(norm(local));
-          if (!SearchesCurve<E> && other >= 0) take(norm(local - model.bodies[at(other)].position));
+          if (!HasCurve<E> && other >= 0) take(norm(local - model.bodies[at(other)].position));
         });
         std::apply([&](const auto&... field) { (take(dimension(entry.element, field)), ...); }, E::fields());
       }
@@ -210,7 +210,7 @@ std::vector<double> Equations::attachment_radii(double* mean) const {
         (pulls ? forced : held)[at(plan_->plan_body[at(body)])].add(square);
         if (!pulls) all.add(square);
       });
-      if constexpr (SearchesCurve<ElementOf<decltype(list)>>) {
+      if constexpr (HasCurve<ElementOf<decltype(list)>>) {
         for (const int body : {entry.i, entry.j}) {
           if (body >= 0) on_curve[at(plan_->plan_body[at(body)])] = 1;
         }

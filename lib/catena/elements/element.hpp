@@ -180,6 +180,12 @@ concept SearchesCurve = requires(const E& e, const Frame<double>& f, CurvePlace&
   e.follow_contact(f, f, place);
 };
 
+/// Has the curve that it searches along among its fields, which tell all of it.
+template <class E>
+concept HasCurve = SearchesCurve<E> && !requires(const E& e) {
+  e.law;
+};
+
 /// Says what its row is compared with: measure(i, j), of those that search with the place of the contact.
 template <class E>
 concept Measuring = requires(const E& e, const Frame<double>& f) {

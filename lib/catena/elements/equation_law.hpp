@@ -5,7 +5,12 @@
 //   template <class T> T measure(const Frame<T>& i, const Frame<T>& j) const       the quantity that is to equal c, m
 //
 // T is one of the scalars below: from these the library derives the equation's value, Phi_q, nu, gamma and second
-// derivatives, exact to rounding.
+// derivatives, exact to rounding. A law that searches for a place on a curve has what elements have that do
+// (element.hpp):
+//
+//   CurvePlace place() const                                  where the search begins in the given configuration
+//   void follow_contact(const Frame<double>& i, const Frame<double>& j, CurvePlace& place) const
+//   template <class T> T measure(const Frame<T>& i, const Frame<T>& j, const CurvePlace& place) const
 #pragma once
 
 #include <memory>
@@ -14,6 +19,7 @@
 #include "catena/base/design_scalar.hpp"
 #include "catena/base/frame.hpp"
 #include "catena/base/taylor.hpp"
+#include "catena/elements/element.hpp"
 
 /// The scalars a law is evaluated in: numbers, time series, first and second derivatives by six coordinates; and, with
 /// derivatives by design parameters, numbers, time series and first derivatives.
@@ -35,7 +41,9 @@ class EquationLaw {
   using DesignGradient = Dual<DesignScalar, 6>;
 
   virtual ~EquationLaw() = default;
-#define CATENA_DECLARE(T) virtual T measure(const Frame<T>& i, const Frame<T>& j) const = 0;
+  virtual CurvePlace place() const = 0;
+  virtual void follow_contact(const Frame<double>& i, const Frame<double>& j, CurvePlace& place) const = 0;
+#define CATENA_DECLARE(T) virtual T measure(const Frame<T>& i, const Frame<T>& j, const CurvePlace& place) const = 0;
   CATENA_LAW_SCALARS(CATENA_DECLARE)
 #undef CATENA_DECLARE
 };
@@ -46,8 +54,21 @@ class EquationLawOf final : public EquationLaw {
  public:
   explicit EquationLawOf(Law law) : law_(std::move(law)) {}
 
-#define CATENA_OVERRIDE(T) \
-  T measure(const Frame<T>& i, const Frame<T>& j) const override { return law_.measure(i, j); }
+  CurvePlace place() const override {
+    if constexpr (SearchesCurve<Law>) {
+      return law_.place();
+    } else {
+      return {.s_i = 0};
+    }
+  }
+  void follow_contact([[maybe_unused]] const Frame<double>& i, [[maybe_unused]] const Frame<double>& j,
+                      [[maybe_unused]] CurvePlace& place) const override {
+    if constexpr (SearchesCurve<Law>) law_.follow_contact(i, j, place);
+  }
+#define CATENA_OVERRIDE(T)                                                                  \
+  T measure(const Frame<T>& i, const Frame<T>& j, const CurvePlace& place) const override { \
+    return measure_of(law_, i, j, place);                                                   \
+  }
   CATENA_LAW_SCALARS(CATENA_OVERRIDE)
 #undef CATENA_OVERRIDE
 

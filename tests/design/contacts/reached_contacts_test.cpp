@@ -38,7 +38,8 @@ int reached_by(DesignScalar Numbers<DesignScalar>::*number) {
   Numbers<DesignScalar> lifted;
   (lifted.*number).d[0] = 1;
   const auto model = disc_on_a_curve(plain);
-  const Evaluator evaluator(Plan::make(*model, {.one_sided = true}), *model);
+  EvaluationWork work;
+  const Evaluator evaluator(Plan::make(*model, {.one_sided = true}), *model, work);
   const AdjointMechanism adjoint(evaluator);
   return AdjointMechanism::Reached(adjoint, DesignMechanism(evaluator, disc_on_a_curve(lifted))).elements();
 }

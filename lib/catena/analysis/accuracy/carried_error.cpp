@@ -97,7 +97,7 @@ void CarriedError::step(const Integrator& integrator, const EquationsOfMotion& e
 
 void CarriedError::get_ready() {
   if (!equations_) {
-    evaluator_.emplace(motion_);
+    evaluator_.emplace(motion_, evaluation_);
     evaluator_->trace = nullptr;
     evaluator_->forget_turns();
     equations_.emplace(*evaluator_);

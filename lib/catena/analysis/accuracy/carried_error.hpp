@@ -60,6 +60,7 @@ class CarriedError final : public StepFollower {
 
   const Evaluator& motion_;
   const EquationsOfMotion* solved_ = nullptr;  // of the motion
+  EvaluationWork evaluation_;
   std::optional<Evaluator> evaluator_;
   std::optional<EquationsOfMotion> equations_;
   std::size_t n_ = 0, moving_ = 0;

@@ -8,7 +8,7 @@
 #include "catena/base/at.hpp"
 
 namespace catena {
-MotionRounding::MotionRounding(Evaluator& evaluator) : length_(evaluator.length_scale()) {
+MotionRounding::MotionRounding(const Evaluator& evaluator) : length_(evaluator.length_scale()) {
   const Plan& plan = evaluator.plan();
   std::vector<double> sum = force_sizes(evaluator).all;
   const auto reach = [&](int b) { return b >= 0 ? norm(evaluator.ground_frame(b).origin()) : 0.0; };

@@ -21,7 +21,7 @@ namespace catena {
 class MotionRounding {
  public:
   /// At the place where the evaluator is.
-  explicit MotionRounding(Evaluator& evaluator);
+  explicit MotionRounding(const Evaluator& evaluator);
 
   /// Takes over the largest rate of a motion, rad/s.
   void take_rate(double rate) { rate_ = rate; }

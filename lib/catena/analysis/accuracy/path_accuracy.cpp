@@ -23,7 +23,7 @@ PathAccuracy::PathAccuracy(const Path& analysis, std::shared_ptr<const Model> fi
     : first_(std::move(first)),
       columns_(columns),
       info_{{"parameter", UnitKind::own}},
-      evaluator_(analysis.shared_plan(), *first_),
+      evaluator_(analysis.shared_plan(), *first_, evaluation_),
       system_(evaluator_),
       path_(system_, std::move(model_at), options.from, std::max(std::abs(options.to - options.from), 1e-300)),
       terms_(evaluator_),

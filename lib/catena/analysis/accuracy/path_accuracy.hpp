@@ -51,6 +51,7 @@ class PathAccuracy {
   std::shared_ptr<const Model> first_;
   const ColumnSet& columns_;
   std::vector<ColumnInfo> info_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   StaticSystem system_;
   PathSystem path_;

@@ -19,8 +19,8 @@ bool is_among(const std::vector<int>& numbers, int number) {
 PhasedMeasures::~PhasedMeasures() = default;
 
 PhasedMeasures::PhasedMeasures(PhasedDesign design, GivenByModel start)
-    : StateDerivatives(Evaluator(Plan::make(*design.contacts.model, design.all_rows), *design.contacts.model),
-                       design.models, design.parameters),
+    : StateDerivatives(Plan::make(*design.contacts.model, design.all_rows), *design.contacts.model, design.models,
+                       design.parameters),
       n_(at(plan().coordinates())),
       contacts_(std::move(design.contacts)),
       models_(std::move(design.models)),

@@ -16,7 +16,8 @@ bool PhasedMeasures::add_start() {
   const Point point = point_of(first.from, Side::after, first.begin);
   if (!transpose_->factorize(point)) return singular_at(first.from);
   for (Way& way : ways_) release_anchors(point, way);
-  Evaluator open(open_plan_, *contacts_.model);
+  EvaluationWork work;
+  Evaluator open(open_plan_, *contacts_.model, work);
   open.go_to_curve_places(first.places);
   open.set_time(first.from);
   open.set_configuration(point.q);

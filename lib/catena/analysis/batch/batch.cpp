@@ -96,7 +96,7 @@ class Batch::Worker {
         instants_(instants),
         grid_(grid),
         models_(at(lane_count), *batch.model_),
-        evaluator_(batch.plan_, models_.front()),
+        evaluator_(batch.plan_, models_.front(), evaluation_),
         motion_(*batch.program_),
         length_scale_(evaluator_.length_scale()) {
     motion_.solver().share_functions(batch.options_.same_functions);
@@ -195,6 +195,7 @@ class Batch::Worker {
   std::span<const double> instants_;
   const TimeGrid& grid_;
   std::vector<Model> models_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   LaneMotion motion_;
   double length_scale_;

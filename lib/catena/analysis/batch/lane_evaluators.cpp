@@ -8,7 +8,7 @@
 namespace catena {
 
 LaneEvaluators::Lane::Lane(std::shared_ptr<const Plan> plan, const Model& model)
-    : evaluator(std::move(plan), model),
+    : evaluator(std::move(plan), model, work),
       watched(evaluator),
       q(evaluator.given_configuration()),
       qd(q.size(), 0.0),

@@ -41,6 +41,7 @@ class LaneEvaluators {
     void begin_ropes();
     const char* follow_ropes();
 
+    EvaluationWork work;
     Evaluator evaluator;
     WatchedElements watched;
     std::vector<double> q, qd, forces;  // plan order, places relative to the evaluator's origins

@@ -66,7 +66,8 @@ std::unique_ptr<const LaneProgram> LaneProgram::make_static(const Model& model, 
   std::unique_ptr<LaneProgram> program(new LaneProgram);
   program->plan_ = std::move(plan);
   program->has_loads_ = true;
-  const Evaluator evaluator(program->plan_, model);
+  EvaluationWork work;
+  const Evaluator evaluator(program->plan_, model, work);
   why_not = obstacle_in(*program->plan_, evaluator);
   if (why_not.empty()) why_not = static_obstacle_in(*program->plan_, model, evaluator);
   if (!why_not.empty() || !program->list_elements(model, why_not)) return nullptr;
@@ -98,7 +99,8 @@ std::unique_ptr<const LaneProgram> LaneProgram::make(const Model& model, std::sh
         p.rows, p.columns);
     return nullptr;
   }
-  why_not = obstacle_in(p, Evaluator(program->plan_, model));
+  EvaluationWork work;
+  why_not = obstacle_in(p, Evaluator(program->plan_, model, work));
   if (!why_not.empty()) return nullptr;
   program->is_watched_ = !rope_routes(model).empty() || !model.laws.empty();
   program->takes_forces_ = loads && !are_in_lanes(model);

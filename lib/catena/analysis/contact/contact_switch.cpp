@@ -48,7 +48,7 @@ ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vect
                              const PlanOptions& plan)
     : model_(std::move(model)),
       points_(points),
-      evaluator_(Plan::make(*model_, plan), *model_),
+      evaluator_(Plan::make(*model_, plan), *model_, evaluation_),
       equations_(evaluator_),
       redundant_(equations_),
       past_(points.size()),

@@ -194,6 +194,7 @@ class ContactSwitch {
 
   std::shared_ptr<const Model> model_;
   const std::vector<ContactPoint>& points_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   EquationsOfMotion equations_;
   RedundantRows redundant_;

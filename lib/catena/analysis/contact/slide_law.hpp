@@ -6,9 +6,9 @@
 // R: radius of the disc around P_j, m; b = 1 where it is on the left of the curve, else -1; kappa: curvature. At
 // contact x = p + R b n, so that w' is the velocity of the disc's material against the curve's along the tangent p': a
 // wheel that rolls has w' = 0. The foot is that of point_on_curve.hpp; Newton steps in the scalar of the
-// derivatives carry its derivatives exactly, as many as there are orders. On a closed curve s goes on beyond a period.
-// Singular as point_on_curve.hpp. S: the scalar of curve, point and R; that of the frames holds it. Units: m, rad.
-// Source: Haug, section 3.4; rolling without slip.
+// derivatives carry its derivatives exactly, as many as there are orders. On a closed curve s goes on beyond a period:
+// as a place of the state it tells the whole turns, which no frame does. Singular as point_on_curve.hpp. S: the scalar
+// of curve, point and R; that of the frames holds it. Units: m, rad. Source: Haug, section 3.4; rolling without slip.
 #pragma once
 
 #include <algorithm>
@@ -24,20 +24,27 @@ namespace catena {
 template <class S>
 class SlideOnCurve {
  public:
-  /// `arm`: R b.
+  /// `arm`: R b; `start`: the foot in the given configuration, where w is zero.
   SlideOnCurve(BodyCurve<S> curve, const Vec2<S>& point, const S& arm, double start)
-      : curve_(std::move(curve)), point_(point), arm_(arm), foot_(start) {
+      : curve_(std::move(curve)), point_(point), arm_(arm), given_foot_(start) {
     if (!curve_.is_line()) lay_pieces();
-    start_ = travel(S(start));
+    start_ = travel(S(start), start);
+  }
+
+  CurvePlace place() const { return {.s_i = given_foot_}; }
+  /// On a closed curve by less than half a period.
+  void follow_contact(const Frame<double>& i, const Frame<double>& j, CurvePlace& place) const {
+    double s = place.s_i;
+    place.is_regular = follow_foot(curve_, i.to_local(j.point(plain(point_)) - i.origin()), s);
+    place.s_i = curve_.is_closed() ? place.s_i + std::remainder(s - place.s_i, curve_.range()) : s;
   }
 
   template <class T>
-  T measure(const Frame<T>& i, const Frame<T>& j) const {
+  T measure(const Frame<T>& i, const Frame<T>& j, const CurvePlace& place) const {
     const Vec2<T> x = i.to_local(j.point(point_) - i.origin());
-    follow(plain(x));
-    T s(foot_);
+    T s(place.s_i);
     if constexpr (!std::is_same_v<T, double>) {
-      const double bend = foot_descent(curve_.plain(foot_), plain(x)).bend;
+      const double bend = foot_descent(curve_.plain(place.s_i), plain(x)).bend;
       // Each step is exact to one order more: two, and three where a series in time is one by parameters as well.
       constexpr int steps = std::is_same_v<T, Taylor<DesignScalar>> ? 3 : 2;
       for (int step = 0; step < steps; ++step) {
@@ -45,7 +52,7 @@ class SlideOnCurve {
         s = s - dot(c.p - x, c.d1) / T(bend);
       }
     }
-    const auto [length, turn] = travel(s);
+    const auto [length, turn] = travel(s, place.s_i);
     return length - T(start_[0]) + T(arm_) * (j.phi - i.phi - turn + T(start_[1]));
   }
 
@@ -61,18 +68,12 @@ class SlideOnCurve {
       until_.push_back({until_.back()[0] + way[0], until_.back()[1] + way[1]});
     }
   }
-  /// Moves foot_ to the foot of x, on a closed curve by less than half a period.
-  void follow(const Vec2<double>& x) const {
-    double s = foot_;
-    follow_foot(curve_, x, s);
-    foot_ = curve_.is_closed() ? foot_ + std::remainder(s - foot_, curve_.range()) : s;
-  }
-  /// Length and turn of the curve from the start of its range to s, of which the foot is the value.
+  /// Length and turn of the curve from the start of its range to s, of which `foot` is the value.
   template <class T>
-  std::array<T, 2> travel(const T& s) const {
+  std::array<T, 2> travel(const T& s, double foot) const {
     if (curve_.is_line()) return {norm(curve_.evaluate(s).d1) * s, T(0.0)};
-    const double turns = curve_.is_closed() ? std::floor((foot_ - ends_.front()) / curve_.range()) : 0;
-    const double there = foot_ - turns * curve_.range();
+    const double turns = curve_.is_closed() ? std::floor((foot - ends_.front()) / curve_.range()) : 0;
+    const double there = foot - turns * curve_.range();
     const auto next = std::upper_bound(ends_.begin() + 1, ends_.end(), there);
     const auto piece = static_cast<std::size_t>(next - ends_.begin()) - 1;
     std::array<T, 2> way = gauss(T(ends_[piece]), s - T(turns * curve_.range()));
@@ -102,9 +103,7 @@ class SlideOnCurve {
   std::vector<double> ends_;             // of pieces of the curve
   std::vector<std::array<S, 2>> until_;  // length and turn of the curve up to each of them
   std::array<S, 2> start_{};             // and up to the place where w is zero
-  // Found last: where the search for the next one begins, and, as no state tells them, the whole turns on a closed
-  // curve.
-  mutable double foot_;
+  double given_foot_;
 };
 
 }  // namespace catena

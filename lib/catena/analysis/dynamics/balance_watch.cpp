@@ -24,7 +24,7 @@ constexpr double rounding_of_balance = 16 * std::numeric_limits<double>::epsilon
 
 }  // namespace
 
-bool BalanceWatch::conserves(Evaluator& evaluator) {
+bool BalanceWatch::conserves(const Evaluator& evaluator) {
   const Model& model = evaluator.model();
   if (!model.functions.empty() || !model.laws.empty()) return false;
   std::vector<double> motion(static_cast<std::size_t>(evaluator.plan().coordinates()), 0.0);

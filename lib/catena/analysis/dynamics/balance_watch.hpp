@@ -33,7 +33,7 @@ namespace catena {
 class BalanceWatch {
  public:
   /// Whether forces and constraints of a model neither supply nor dissipate energy: tried with a motion of all bodies.
-  static bool conserves(Evaluator& evaluator);
+  static bool conserves(const Evaluator& evaluator);
 
   /// `work_known`: snapshots carry work and dissipation; `drifts`: constraints are not kept. Evaluates energies at the
   /// start.

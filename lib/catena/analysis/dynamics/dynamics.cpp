@@ -16,7 +16,7 @@ Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_o
     : model_(std::move(model)),
       plan_(Plan::make(required(model_), plan_options)),
       options_(options),
-      evaluator_(plan_, *model_),
+      evaluator_(plan_, *model_, evaluation_),
       equations_(evaluator_),
       redundant_(equations_),
       watched_(evaluator_),

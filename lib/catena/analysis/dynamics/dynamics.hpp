@@ -162,6 +162,7 @@ class Dynamics {
   std::shared_ptr<const Plan> plan_;
   DynamicsOptions options_;
   IntegrationMethod method_ = IntegrationMethod::rk8;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   EquationsOfMotion equations_;
   RedundantRows redundant_;

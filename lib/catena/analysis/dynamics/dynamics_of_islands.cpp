@@ -160,6 +160,8 @@ class DynamicsOfIslands::Part final : public RowObserver {
       if (!of.empty()) values.assign(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(3 * body_.size()));
     };
     row.curves = s.evaluator.curve_places();
+    // Slides of contacts, which the part has behind its elements, are no elements of the whole.
+    std::erase_if(row.curves, [this](const CurvePlace& place) { return at(place.element) >= part_.elements.size(); });
     for (CurvePlace& place : row.curves) place.element = part_.elements[at(place.element)];
     take(row.q, s.q);
     take(row.qd, s.qd);
@@ -247,7 +249,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
 
 DynamicsOfIslands::DynamicsOfIslands(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                                      const DynamicsOptions& options, const std::vector<std::vector<int>>& classes)
-    : model_(std::move(model)), plan_(plan_of_all(required(model_), plan_options)), evaluator_(plan_, *model_) {
+    : model_(std::move(model)), plan_(plan_of_all(required(model_), plan_options)), evaluator_(plan_, *model_, evaluation_) {
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
   qdd_.assign(q_.size(), 0.0);

@@ -54,6 +54,7 @@ class DynamicsOfIslands {
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   std::vector<std::unique_ptr<Part>> parts_;
   std::vector<SingularPoint> singular_points_;

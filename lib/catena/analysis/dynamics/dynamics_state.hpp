@@ -83,7 +83,7 @@ struct LeastMultipliers {
   std::string ambiguity;  ///< a remark: whose reactions are not unique, when that was found
 
   /// The least ones at the evaluator's configuration; nullptr: it cannot be factored.
-  MinimumNorm* factorize(Evaluator& evaluator) {
+  MinimumNorm* factorize(const Evaluator& evaluator) {
     if (!norm) norm.emplace(evaluator);
     return norm->factorize() ? &*norm : nullptr;
   }

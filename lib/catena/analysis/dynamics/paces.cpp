@@ -20,7 +20,8 @@ constexpr double one_class = 3;
 std::vector<double> paces_of_bodies(const std::shared_ptr<const Model>& model) {
   PlanOptions open;
   open.released_elements = model->gaps();
-  Evaluator evaluator(Plan::make(*model, open), *model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(*model, open), *model, work);
   const Plan& plan = evaluator.plan();
   const double length = evaluator.length_scale();
   evaluator.set_configuration(evaluator.given_configuration());

@@ -16,7 +16,7 @@ namespace catena {
 Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                        const KinematicsOptions& options)
     : model_(std::move(model)),
-      evaluator_(Plan::make(required(model_), plan_options), *model_),
+      evaluator_(Plan::make(required(model_), plan_options), *model_, evaluation_),
       options_(options),
       fixed_(plan()),
       solver_(evaluator_),

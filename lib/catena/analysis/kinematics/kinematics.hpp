@@ -154,6 +154,7 @@ class Kinematics {
   void place_on_bridge(double t);
 
   std::shared_ptr<const Model> model_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   KinematicsOptions options_;
   FixedCoordinates fixed_;

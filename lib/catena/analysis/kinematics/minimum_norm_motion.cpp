@@ -38,7 +38,7 @@ constexpr double rate_allowance = 1e4;
 MinimumNormMotion::MinimumNormMotion(std::shared_ptr<const Model> model, const PlanOptions& plan_options)
     : model_(std::move(model)),
       plan_(Plan::make(required(model_), plan_options)),
-      evaluator_(plan_, *model_),
+      evaluator_(plan_, *model_, evaluation_),
       least_(evaluator_),
       watched_(evaluator_) {
   q_ = evaluator_.given_configuration();

@@ -61,6 +61,7 @@ class MinimumNormMotion {
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   LeastVelocity least_;
   WatchedElements watched_;

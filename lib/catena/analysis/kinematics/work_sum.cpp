@@ -25,7 +25,7 @@ constexpr std::array<double, 4> cubic = {-0.14153, 0.35847, -0.35847, 0.14153};
 
 }  // namespace
 
-void WorkSum::begin(Evaluator& evaluator) {
+void WorkSum::begin(const Evaluator& evaluator) {
   account_.emplace(evaluator);
   work_.assign(account_->size(), 0.0);
   power_.resize(account_->size());

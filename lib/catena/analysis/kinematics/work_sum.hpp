@@ -34,7 +34,7 @@ class WorkSum {
                                                    0.93056815579702629};
 
   /// All sums are zero, and stretches as long as they may be.
-  void begin(Evaluator& evaluator);
+  void begin(const Evaluator& evaluator);
   /// The energy where the sums begin, from a snapshot with velocities.
   void take_initial_energy(const Snapshot& start);
   void end() { account_.reset(); }

@@ -2,7 +2,7 @@
 
 namespace catena {
 
-EnergyAccount::EnergyAccount(Evaluator& evaluator) : evaluator_(evaluator) {
+EnergyAccount::EnergyAccount(const Evaluator& evaluator) : evaluator_(evaluator) {
   const Plan& plan = evaluator.plan();
   const Model& model = evaluator.model();
   for (std::size_t e = 0; e < model.elements.size(); ++e) {

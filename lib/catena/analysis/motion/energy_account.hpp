@@ -16,7 +16,7 @@ namespace catena {
 
 class EnergyAccount {
  public:
-  explicit EnergyAccount(Evaluator& evaluator);
+  explicit EnergyAccount(const Evaluator& evaluator);
 
   std::size_t size() const { return 2 + drivers_.size(); }
   /// The powers at the evaluator's configuration; lambda: multipliers of the solver's rows there.
@@ -38,7 +38,7 @@ class EnergyAccount {
   void driver_work(std::span<const double> work, std::span<double> by_element) const;
 
  private:
-  Evaluator& evaluator_;
+  const Evaluator& evaluator_;
   struct Driver {
     int element, row;
   };

@@ -35,7 +35,7 @@ void invert(double* a, int n) {
 
 }  // namespace
 
-MinimumNorm::MinimumNorm(Evaluator& evaluator) : evaluator_(evaluator) {
+MinimumNorm::MinimumNorm(const Evaluator& evaluator) : evaluator_(evaluator) {
   const Plan& plan = evaluator.plan();
   for (std::size_t e = 0; e < plan.element_row.size(); ++e) {
     if (plan.element_row[e] < 0 || evaluator.is_left_out(plan.element_row[e])) continue;

@@ -24,7 +24,7 @@ namespace catena {
 
 class MinimumNorm {
  public:
-  explicit MinimumNorm(Evaluator& evaluator);
+  explicit MinimumNorm(const Evaluator& evaluator);
 
   /// Factors at the evaluator's configuration. False: not possible.
   bool factorize();
@@ -49,7 +49,7 @@ class MinimumNorm {
   void load(Block& block) const;
   void make_pattern();
 
-  Evaluator& evaluator_;
+  const Evaluator& evaluator_;
   std::vector<Block> blocks_;
   std::vector<int> slot_, diagonal_;
   SparsePattern pattern_;

@@ -52,14 +52,14 @@ std::array<std::vector<StageTerm>, 16> stage_weights_back(bool interpolated) {
   return back;
 }
 
-RecomputedSteps::Stage::Stage(const Evaluator& of, std::size_t size) : evaluator(of), equations(evaluator) {
+RecomputedSteps::Stage::Stage(const Evaluator& of, std::size_t size) : evaluator(of, work), equations(evaluator) {
   y.assign(size, 0.0);
   slope.assign(size, 0.0);
   lambda.assign(at(of.plan().rows), 0.0);
 }
 
 RecomputedSteps::Stage::Stage(const Evaluator& of, const Stage& like)
-    : evaluator(of), equations(evaluator, like.equations), y(like.y), slope(like.slope), lambda(like.lambda) {}
+    : evaluator(of, work), equations(evaluator, like.equations), y(like.y), slope(like.slope), lambda(like.lambda) {}
 
 RecomputedSteps::RecomputedSteps(const Evaluator& evaluator)
     : evaluator_(evaluator), size_(2 * at(evaluator.plan().coordinates())) {

@@ -47,6 +47,7 @@ class RecomputedSteps {
     Stage(const Evaluator& evaluator, std::size_t size);
     /// Of the same model: the structure of its equations need not be found again.
     Stage(const Evaluator& evaluator, const Stage& like);
+    EvaluationWork work;
     Evaluator evaluator;
     EquationsOfMotion equations;
     double t = 0;

@@ -32,15 +32,25 @@ bool differ(double a, double b, double rounding) {
 StateDerivatives::~StateDerivatives() = default;
 
 StateDerivatives::StateDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters)
-    : evaluator_(evaluator), parameters_(parameters) {
+    : evaluator_(evaluator, evaluation_), parameters_(parameters) {
   evaluator_.forget_turns();
-  if (static_cast<int>(models.size()) != (parameters + parameters_at_once - 1) / parameters_at_once)
+  make_groups(models);
+}
+
+StateDerivatives::StateDerivatives(std::shared_ptr<const Plan> plan, const Model& model, const DesignModels& models,
+                                   int parameters)
+    : evaluator_(std::move(plan), model, evaluation_), parameters_(parameters) {
+  make_groups(models);
+}
+
+void StateDerivatives::make_groups(const DesignModels& models) {
+  if (static_cast<int>(models.size()) != (parameters_ + parameters_at_once - 1) / parameters_at_once)
     throw std::invalid_argument("derivatives: there must be a model for every four parameters");
   const auto coordinates = static_cast<std::size_t>(plan().coordinates()), rows = static_cast<std::size_t>(plan().rows);
   groups_.reserve(models.size());
   for (const auto& model : models) {
     Group& group = groups_.emplace_back(DesignMechanism(evaluator_, model));
-    group.count = std::min(parameters - static_cast<int>(groups_.size() - 1) * parameters_at_once, parameters_at_once);
+    group.count = std::min(parameters_ - static_cast<int>(groups_.size() - 1) * parameters_at_once, parameters_at_once);
     for (auto* values : {&group.q, &group.qd, &group.qdd, &group.loads}) values->resize(coordinates);
     group.lambda.resize(rows);
     group.rows.resize(rows);

@@ -34,6 +34,8 @@ class StateDerivatives {
  public:
   /// `evaluator` is copied; `parameters`: how many, at least four times as many as models less three.
   StateDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters);
+  /// At the model's given pose.
+  StateDerivatives(std::shared_ptr<const Plan> plan, const Model& model, const DesignModels& models, int parameters);
   virtual ~StateDerivatives();
   StateDerivatives(const StateDerivatives&) = delete;
   StateDerivatives& operator=(const StateDerivatives&) = delete;
@@ -133,6 +135,9 @@ class StateDerivatives {
   std::span<double> rows_scratch() { return b_; }
 
  private:
+  void make_groups(const DesignModels& models);
+
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   int parameters_;
   std::vector<Group> groups_;

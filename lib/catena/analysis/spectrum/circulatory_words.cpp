@@ -16,7 +16,7 @@ std::vector<std::string> free_bodies_of(StaticSystem& system, std::span<const do
   return names_of_moving(system, lambda, free);
 }
 
-std::vector<std::string> describe_motions(const StaticSystem& system, Evaluator& evaluator,
+std::vector<std::string> describe_motions(const StaticSystem& system, const Evaluator& evaluator,
                                           const CirculatoryModes& found, const std::vector<std::string>& free_bodies) {
   std::vector<std::string> sentences;
   const CirculatoryMode *lowest = nullptr, *fastest = nullptr;

@@ -15,7 +15,7 @@ std::vector<std::string> free_bodies_of(StaticSystem& system, std::span<const do
 
 /// A sentence each for free motions, negative omega2 and pairs; nothing where all is stable. `free_bodies`: of
 /// free_bodies_of.
-std::vector<std::string> describe_motions(const StaticSystem& system, Evaluator& evaluator,
+std::vector<std::string> describe_motions(const StaticSystem& system, const Evaluator& evaluator,
                                           const CirculatoryModes& found, const std::vector<std::string>& free_bodies);
 
 }  // namespace catena

@@ -94,7 +94,8 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
 std::optional<FreeMotions> find_free_motions(const std::shared_ptr<const Model>& model, const SystemState& state) {
   PlanOptions options;
   options.released_elements = model->gaps();
-  Evaluator evaluator(Plan::make(*model, options), *model);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(*model, options), *model, work);
   if (!evaluator.conservative() || evaluator.plan().columns > most_checked_columns) return {};
   StaticSystem system(evaluator);
   evaluator.set_time(state.t);

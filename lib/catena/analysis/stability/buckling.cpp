@@ -41,7 +41,7 @@ Buckling::Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const B
     : model_(std::move(model)),
       plan_(Plan::make(catena::required(model_), with_gaps(plan_options))),
       options_(options),
-      evaluator_(plan_, *model_),
+      evaluator_(plan_, *model_, evaluation_),
       system_(evaluator_),
       path_(system_, required(std::move(model_at)), options.present, 1) {
   point_ = {evaluator_.given_configuration(), std::vector<double>(at(plan_->rows), 0.0), options.present};

@@ -117,6 +117,7 @@ class Buckling {
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
   BucklingOptions options_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   StaticSystem system_;
   PathSystem path_;

@@ -89,7 +89,7 @@ Modes::Modes(std::shared_ptr<const Model> model, const PlanOptions& plan_options
     : model_(std::move(model)),
       plan_(Plan::make(required(model_), with_gaps(plan_options))),
       options_(options),
-      evaluator_(plan_, *model_),
+      evaluator_(plan_, *model_, evaluation_),
       system_(evaluator_),
       q_(evaluator_.given_configuration()) {}
 

@@ -97,6 +97,7 @@ class Modes {
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
   ModesOptions options_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   StaticSystem system_;
   std::vector<AddedSpring> added_;

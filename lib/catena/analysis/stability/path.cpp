@@ -20,7 +20,7 @@ Path::Path(std::shared_ptr<const Model> model, ModelAt model_at, const PathOptio
       plan_(Plan::make(required(model_), with_gaps(plan_options))),
       model_at_(std::move(model_at)),
       options_(options),
-      evaluator_(plan_, *model_),
+      evaluator_(plan_, *model_, evaluation_),
       system_(evaluator_),
       path_(system_, model_at_, options.from, std::max(std::abs(options.to - options.from), 1e-300)),
       q_(evaluator_.given_configuration()) {

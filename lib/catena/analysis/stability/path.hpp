@@ -85,6 +85,7 @@ class Path {
   std::shared_ptr<const Plan> plan_;
   ModelAt model_at_;
   PathOptions options_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   StaticSystem system_;
   PathSystem path_;

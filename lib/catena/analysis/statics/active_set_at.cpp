@@ -37,7 +37,8 @@ Report assemble_without_gaps(StaticSystem& system, std::vector<double>& q) {
   Evaluator& evaluator = system.evaluator();
   PlanOptions options;
   options.released_elements = evaluator.model().gaps();
-  Evaluator free(Plan::make(evaluator.model(), options), evaluator.model());
+  EvaluationWork work;
+  Evaluator free(Plan::make(evaluator.model(), options), evaluator.model(), work);
   free.set_time(evaluator.time());
   std::vector<double> place = configuration_of(free, state_of(evaluator, evaluator.time(), q));
   const Report report = Assembler(free).assemble(place);

@@ -84,7 +84,7 @@ Equilibrium::Equilibrium(std::shared_ptr<const Model> model, const PlanOptions& 
     : model_(std::move(model)),
       plan_(Plan::make(required(model_), with_gaps(plan_options))),
       options_(options),
-      evaluator_(plan_, *model_),
+      evaluator_(plan_, *model_, evaluation_),
       system_(evaluator_) {
   if (!(options.tolerance > 0)) throw std::invalid_argument("equilibrium: the tolerance must be above zero");
   if (options.find < 1) throw std::invalid_argument("equilibrium: find asks for at least one equilibrium");

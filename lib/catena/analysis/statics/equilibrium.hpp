@@ -108,6 +108,7 @@ class Equilibrium {
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
   EquilibriumOptions options_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   StaticSystem system_;
   bool solved_ = false, neutral_ = false;

@@ -36,7 +36,7 @@ std::string AdjointMechanism::why_not(const Model& model, bool has_phases) {
     if constexpr (std::is_same_v<E, CustomConstraint<double>>) {
       if (!has_phases) why = "elements made in C++ act";
     }
-    if constexpr (SearchesCurve<E>) {
+    if constexpr (HasCurve<E>) {
       if (!has_phases) why = "contacts run on curves";
     }
     if constexpr (Joining<E>) why = "a rope runs over several pulleys";

@@ -188,7 +188,7 @@ AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const Design
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
     // Those that search along curves have nothing beside their fields; slides are made of what their contacts are. Of
     // others that show scalars alone nothing is known: a parameter may be in them.
-    if constexpr (SearchesCurve<Plain>)
+    if constexpr (HasCurve<Plain>)
       collect(block, list, constraints_, [](const auto&) { return false; });
     else if constexpr (detail::has_adjoint<Plain>)
       collect(block, list, constraints_, [](const auto& entry) { return phi_moves(entry.element); });

@@ -1,4 +1,5 @@
 // AdjointMechanism: equations of slides, which are evaluated in design scalars, four coordinates at a time.
+#include "catena/assembly/curve_contacts.hpp"
 #include "catena/assembly/design/adjoint_mechanism.hpp"
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/base/at.hpp"
@@ -50,8 +51,9 @@ struct SlidingPair {
 /// Calls add(coordinate, by_rate, derivative of the slide) for the coordinates of the bodies that move, numbered as
 /// `poses` and `poses_and_rates` have them, up to `count`.
 template <class Add>
-void differentiate_slide(const Slide& slide, const detail::DesignFrames<Taylor<double>>& frames,
-                         const SlidingPair& pair, int count, Add&& add) {
+void differentiate_slide(const Slide& slide, const CurvePlace& place,
+                         const detail::DesignFrames<Taylor<double>>& frames, const SlidingPair& pair, int count,
+                         Add&& add) {
   std::array<int, parameters_at_once> number{};
   for (int next = 0; next < count;) {
     Frame<DesignSeries> i = detail::lifted(frames.i), j = detail::lifted(frames.j);
@@ -62,7 +64,7 @@ void differentiate_slide(const Slide& slide, const detail::DesignFrames<Taylor<d
       number[seeded++] = next;
     }
     if (seeded == 0) return;
-    const DesignSeries w = slide.measure(i, j);
+    const DesignSeries w = slide.measure(i, j, place);
     for (std::size_t s = 0; s < seeded; ++s) {
       const std::size_t c = at(3 * pair.body_of(number[s]) + number[s] % 3);
       add(c, number[s] >= poses, Taylor<double>{w.f.d[s], w.d.d[s], w.dd.d[s]});
@@ -83,7 +85,7 @@ void AdjointMechanism::add_slides_by_q(const AdjointWeights& weights, std::span<
     if (bend == 0 && rate == 0) continue;
     const auto frames =
         detail::design_frames<Series>(block, e, plan_->moving, origin_, [&](int body) { return motion_[at(body)]; });
-    differentiate_slide(list[at(block.entry[at(e)])].element, frames,
+    differentiate_slide(list[at(block.entry[at(e)])].element, contact_of(block, contacts_, block.entry[at(e)]), frames,
                         {{block.body_i[at(e)], block.body_j[at(e)]}, plan_->moving},
                         bend != 0 ? poses_and_rates : poses, [&](std::size_t c, bool by_rate, const Taylor<double>& w) {
                           if (by_rate)
@@ -107,7 +109,7 @@ void AdjointMechanism::add_slides_curvature(const AdjointWeights& weights, std::
     const double lambda = weights.lambda[at(block.row(e))];
     if (lambda == 0) continue;
     const auto frames = detail::design_frames<Series>(block, e, plan_->moving, origin_, along);
-    differentiate_slide(list[at(block.entry[at(e)])].element, frames,
+    differentiate_slide(list[at(block.entry[at(e)])].element, contact_of(block, contacts_, block.entry[at(e)]), frames,
                         {{block.body_i[at(e)], block.body_j[at(e)]}, plan_->moving}, poses,
                         [&](std::size_t c, bool, const Taylor<double>& w) { by_q[c] -= lambda * w.d; });
   }

@@ -22,7 +22,7 @@ constexpr bool is_differentiated =
 
 /// What AdjointMechanism differentiates: elements that search along curves as well, from the contacts that it is given.
 template <class E>
-constexpr bool has_adjoint = is_differentiated<E> || SearchesCurve<E>;
+constexpr bool has_adjoint = is_differentiated<E> || HasCurve<E>;
 
 /// Equations that show a few scalars alone: slides of contacts, and what only C++ can make.
 template <class E>

@@ -42,7 +42,7 @@ void KktMatrix::clear() {
   std::fill(values_.begin() + structure_.turning(0), values_.end(), 0.0);
 }
 
-void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature,
+void KktMatrix::set_hessian(const Evaluator& evaluator, std::span<const double> lambda, Curvature curvature,
                             const ForeseenSprings* springs) {
   clear();
   if (springs && springs->active()) {
@@ -55,7 +55,7 @@ void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda
 
 // Constraints alone, without the stiffness of forces, beside which a curvature in 1/m may be rounding. Multipliers of
 // neighbouring rows differ, so that the curvatures of one element's rows do not cancel.
-bool KktMatrix::constraints_are_linear(Evaluator& evaluator) {
+bool KktMatrix::constraints_are_linear(const Evaluator& evaluator) {
   std::vector<double> lambda(at(structure_.rows));
   for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] = 1 + 0.37 * static_cast<double>(r % 3);
   bool linear = true;

@@ -11,6 +11,11 @@
 // of the bodies the row touches, since a mechanism may hold springs and links over many orders of magnitude: rho
 // comparable with K there, eps = 1e-10 / rho. Where rows depend on each other eps decides between their multipliers:
 // the least ones; a row whose pivot is no larger than a few eps is reported as dependent.
+//
+// Why not ConstraintSolver: that one eliminates a diagonal W > 0 and factors S = Phi_q W^-1 Phi_q^T alone. K is neither
+// diagonal nor definite, and no inverse of it exists where constraints alone hold a body; and stability is read from
+// the signs of the pivots of the whole, which S does not have. Why not Tangent: that one holds both triangles for LU,
+// whose pivots tell no inertia. All three are assembled from the values of the same Equations.
 #pragma once
 
 #include <memory>
@@ -45,11 +50,11 @@ class KktMatrix {
     keep_equal_factors_ = keep;
   }
   /// Whether K does not depend on these multipliers: constraints without second derivatives at this configuration.
-  bool constraints_are_linear(Evaluator& evaluator);
+  bool constraints_are_linear(const Evaluator& evaluator);
 
   /// Fills K at the evaluator's configuration, except the stiffness against turning, which goes to turning(). Springs
   /// use foreseen lengths where these are active.
-  void set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature,
+  void set_hessian(const Evaluator& evaluator, std::span<const double> lambda, Curvature curvature,
                    const ForeseenSprings* springs = nullptr);
   /// Per moving body, N m: may be changed between set_hessian and complete.
   std::span<double> turning() { return {values_.data() + structure_.turning(0), static_cast<std::size_t>(moving_)}; }

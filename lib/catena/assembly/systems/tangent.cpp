@@ -74,7 +74,7 @@ void Tangent::set_compliance(double e) {
   for (std::size_t k = at(plan_->columns); k < diagonal_slot_.size(); ++k) values_[at(diagonal_slot_[k])] = -e;
 }
 
-void Tangent::add_stiffness(Evaluator& evaluator, std::span<const double> lambda, bool transposed) {
+void Tangent::add_stiffness(const Evaluator& evaluator, std::span<const double> lambda, bool transposed) {
   const int* slot = force_slot_.data();
   evaluator.visit_stiffness({}, [&](int, int, const ElementMatrix& m) {
     for (std::size_t k = 0; k < m.size(); ++k) values_[at(slot[transposed ? transposed_entry[k] : k])] += m[k];

@@ -39,7 +39,7 @@ class Tangent {
   /// E of every row.
   void set_compliance(double e);
   /// A += K at the evaluator's configuration, or K^T; lambda: of all rows of the plan.
-  void add_stiffness(Evaluator& evaluator, std::span<const double> lambda, bool transposed = false);
+  void add_stiffness(const Evaluator& evaluator, std::span<const double> lambda, bool transposed = false);
   /// A += sum lambda Phi_qq alone.
   void add_curvature(const Evaluator& evaluator, std::span<const double> lambda);
 
@@ -81,7 +81,7 @@ void visit_curvature(const Evaluator& evaluator, std::span<const double> lambda,
       lambda, [&](int i, int j, const ElementMatrix& m) { visit_entries(evaluator.plan(), i, j, m, f); });
 }
 template <class F>
-void visit_tangent(Evaluator& evaluator, std::span<const double> lambda, F&& f) {
+void visit_tangent(const Evaluator& evaluator, std::span<const double> lambda, F&& f) {
   evaluator.visit_stiffness({},
                             [&](int i, int j, const ElementMatrix& m) { visit_entries(evaluator.plan(), i, j, m, f); });
   visit_curvature(evaluator, lambda, f);

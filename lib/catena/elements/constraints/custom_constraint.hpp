@@ -42,13 +42,18 @@ struct CustomConstraint {
 
   const char* check() const { return law ? nullptr : "needs a law"; }
 
+  CurvePlace place() const { return law->place(); }
+  void follow_contact(const Frame<double>& i, const Frame<double>& j, CurvePlace& place) const {
+    law->follow_contact(i, j, place);
+  }
+
   template <class T>
-  T measure(const Frame<T>& i, const Frame<T>& j) const {
-    return law->measure(i, j);
+  T measure(const Frame<T>& i, const Frame<T>& j, const CurvePlace& place) const {
+    return law->measure(i, j, place);
   }
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {
-    out[0] = measure(a.i, a.j) - a.c;
+    out[0] = measure(a.i, a.j, *a.contact) - a.c;
   }
 };
 

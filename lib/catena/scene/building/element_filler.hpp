@@ -181,7 +181,7 @@ class Filler {
 template <class E, class S>
 void measure_value(ElementEntry<E, S>& entry, const Frame<S>& i, const Frame<S>& j) {
   if constexpr (E::functions == 1 && when_omitted<E>() == Omitted::given) {
-    entry.values[0].constant = entry.element.measure(i, j);
+    entry.values[0].constant = measure_of(entry.element, i, j, no_contact);
   }
 }
 

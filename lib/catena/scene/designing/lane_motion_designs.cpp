@@ -84,7 +84,7 @@ LaneMotionDesigns::LaneMotionDesigns(const AnalysisContext& context, std::shared
       model_(std::move(model)),
       program_(std::move(program)),
       measures_(std::move(measures)),
-      evaluator_(std::move(plan), *model_),
+      evaluator_(std::move(plan), *model_, evaluation_),
       motion_(*program_),
       look_(*program_, evaluator_, columns_of(*program_, *model_, *measures_)) {
   for (Lane& lane : lanes_) lane.task = context.task.of.front();

@@ -48,6 +48,7 @@ class LaneMotionDesigns : public LaneDesigns {
   std::shared_ptr<const Model> model_;  // of the scene as it is
   std::unique_ptr<const LaneProgram> program_;
   std::unique_ptr<MeasureSet> measures_;
+  EvaluationWork evaluation_;
   Evaluator evaluator_;
   LaneMotion motion_;
   LaneLook look_;

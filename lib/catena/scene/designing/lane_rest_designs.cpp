@@ -38,7 +38,8 @@ std::string obstacle_of_rest(const AnalysisTask& task) {
 
 /// Empty, or why nothing holds the model.
 std::string why_loose(std::shared_ptr<const Plan> plan, const Model& model) {
-  Evaluator evaluator(std::move(plan), model);
+  EvaluationWork work;
+  Evaluator evaluator(std::move(plan), model, work);
   StaticSystem system(evaluator);
   system.move_to(evaluator.given_configuration());
   const std::optional<Report> loose = find_loose_bodies(system, evaluator);
@@ -96,7 +97,7 @@ LaneRestDesigns::LaneRestDesigns(const AnalysisContext& context, std::shared_ptr
       lambda_(at(plan_->rows)) {
   for (Lane& lane : lanes_) {
     lane.task = context.task.of.front();
-    lane.evaluator.emplace(plan_, *model_);
+    lane.evaluator.emplace(plan_, *model_, lane.work);
   }
   is_linear_ = plan_->constant_jacobian || matrix_.constraints_are_linear(*lanes_[0].evaluator);
 }

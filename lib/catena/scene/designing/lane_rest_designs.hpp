@@ -29,7 +29,8 @@ class LaneRestDesigns : public LaneDesigns {
   struct Lane {
     AnalysisTask task;
     std::shared_ptr<const Model> model;
-    std::optional<Evaluator> evaluator;
+    EvaluationWork work{};
+    std::optional<Evaluator> evaluator{};
     std::vector<double> start{}, q{};
   };
   LaneRestDesigns(const AnalysisContext& context, std::shared_ptr<const Model> model, std::shared_ptr<const Plan> plan,

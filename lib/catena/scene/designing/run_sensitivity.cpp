@@ -75,7 +75,7 @@ class Comparison {
     place_.set_parameters = modes.set_parameters;
     SystemState state = start_;
     moves_ = go_to_place(context_.seeds, state);
-    const double length = Evaluator(Plan::make(*context_.model), *context_.model).length_scale();
+    const double length = Equations(Plan::make(*context_.model), *context_.model).length_scale();
     for (std::size_t c = 0; moves_ && c < start_.q.size(); ++c)
       moves_ = std::abs(state.q[c] - start_.q[c]) <= same_place * (c % 3 == 2 ? 1 : length);
   }

@@ -68,7 +68,8 @@ struct PresentPlace {
       why = "the scene allows no model at this load";
       return {};
     }
-    Evaluator evaluator(analysis.evaluator().shared_plan(), *model);
+    EvaluationWork work;
+    Evaluator evaluator(analysis.evaluator().shared_plan(), *model, work);
     const auto lambda = balancing_multipliers(evaluator, analysis.time(), analysis.q());
     why = singular;
     if (!lambda) return {};

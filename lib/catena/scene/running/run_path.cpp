@@ -34,7 +34,8 @@ std::vector<double> critical_gradient(const AnalysisContext& context, const std:
     trouble = "the scene allows no model at this value";
     return none;
   }
-  const Evaluator evaluator(plan, *model);
+  EvaluationWork work;
+  const Evaluator evaluator(plan, *model, work);
   const DesignModels models = designs_of(context, parameter, ParameterSeed<double>{parameter, place.value});
   const auto gradient =
       limit_load_gradient(evaluator, models, static_cast<int>(count) + 1, {t, place.q, place.lambda}, trouble);

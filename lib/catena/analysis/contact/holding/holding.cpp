@@ -201,7 +201,7 @@ ContactHolding::ContactHolding(std::shared_ptr<const Model> model) : contacts_(c
     if (point.kind == ContactKind::grip) options.released_elements.push_back(point.slide);
     if (point.kind != ContactKind::grip && point.has_friction()) options.released_elements.push_back(point.slide);
   }
-  evaluator_ = std::make_unique<Evaluator>(Plan::make(*contacts_.model, options), *contacts_.model);
+  evaluator_ = std::make_unique<Evaluator>(Plan::make(*contacts_.model, options), *contacts_.model, evaluation_);
 }
 
 // The grips of ropes as these lie there.

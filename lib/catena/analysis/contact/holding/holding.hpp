@@ -49,6 +49,7 @@ class ContactHolding {
   void lay_grips(const SystemState& state);
 
   ContactModel contacts_;
+  EvaluationWork evaluation_;
   std::unique_ptr<Evaluator> evaluator_;
 };
 

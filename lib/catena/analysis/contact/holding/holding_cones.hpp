@@ -49,7 +49,7 @@ struct RopeEdges {
 /// Forces as columns of the plan, moments divided by the length scale so that they compare.
 class ForceColumns {
  public:
-  explicit ForceColumns(Evaluator& evaluator)
+  explicit ForceColumns(const Evaluator& evaluator)
       : evaluator_(evaluator), length_(evaluator.length_scale()), rest_(at(evaluator.plan().coordinates()), 0.0) {}
 
   ForceColumn of(std::span<const double> loads) const {
@@ -80,7 +80,7 @@ class ForceColumns {
   std::vector<ForceColumn> of_constraints();
 
  private:
-  Evaluator& evaluator_;
+  const Evaluator& evaluator_;
   double length_;
   std::vector<double> rest_;
 };
@@ -94,6 +94,6 @@ struct ContactCones {
 };
 
 /// At the evaluator's configuration. A report where a rope has too many pulleys with friction.
-Report find_cones(const ContactModel& contacts, Evaluator& evaluator, ForceColumns& columns, ContactCones& cones);
+Report find_cones(const ContactModel& contacts, const Evaluator& evaluator, ForceColumns& columns, ContactCones& cones);
 
 }  // namespace catena

@@ -31,14 +31,17 @@ ContactJumps::ContactJumps(const Model& model) {
     if constexpr (SearchesCurve<E>) {
       for (const auto& entry : list) {
         ranges_.resize(std::max(ranges_.size(), at(entry.id) + 1));
-        const auto take = [&](const auto& field) {
-          if constexpr (std::is_same_v<std::remove_cvref_t<decltype(entry.element.*field.member)>, BodyCurve<double>>) {
-            const BodyCurve<double>& curve = entry.element.*field.member;
-            if (curve && !curve.is_line())
-              (field.body == 0 ? ranges_[at(entry.id)].i : ranges_[at(entry.id)].j) = curve.range();
-          }
-        };
-        std::apply([&](const auto&... field) { (take(field), ...); }, E::fields());
+        if constexpr (HasCurve<E>) {
+          const auto take = [&](const auto& field) {
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(entry.element.*field.member)>,
+                                         BodyCurve<double>>) {
+              const BodyCurve<double>& curve = entry.element.*field.member;
+              if (curve && !curve.is_line())
+                (field.body == 0 ? ranges_[at(entry.id)].i : ranges_[at(entry.id)].j) = curve.range();
+            }
+          };
+          std::apply([&](const auto&... field) { (take(field), ...); }, E::fields());
+        }
       }
     }
   });

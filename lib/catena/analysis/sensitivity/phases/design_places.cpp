@@ -20,21 +20,34 @@ class DesignSlide final : public EquationLaw {
   DesignSlide(SlideOnCurve<DesignScalar> slide, std::shared_ptr<const EquationLaw> plain)
       : slide_(std::move(slide)), plain_(std::move(plain)) {}
 
-  double measure(const Frame<double>& i, const Frame<double>& j) const override { return plain_->measure(i, j); }
-  Taylor<double> measure(const Frame<Taylor<double>>& i, const Frame<Taylor<double>>& j) const override {
-    return plain_->measure(i, j);
+  CurvePlace place() const override { return plain_->place(); }
+  void follow_contact(const Frame<double>& i, const Frame<double>& j, CurvePlace& place) const override {
+    plain_->follow_contact(i, j, place);
   }
-  Gradient measure(const Frame<Gradient>& i, const Frame<Gradient>& j) const override { return plain_->measure(i, j); }
-  Second measure(const Frame<Second>& i, const Frame<Second>& j) const override { return plain_->measure(i, j); }
-  DesignScalar measure(const Frame<DesignScalar>& i, const Frame<DesignScalar>& j) const override {
-    return slide_.measure(i, j);
+  double measure(const Frame<double>& i, const Frame<double>& j, const CurvePlace& place) const override {
+    return plain_->measure(i, j, place);
   }
-  Taylor<DesignScalar> measure(const Frame<Taylor<DesignScalar>>& i,
-                               const Frame<Taylor<DesignScalar>>& j) const override {
-    return slide_.measure(i, j);
+  Taylor<double> measure(const Frame<Taylor<double>>& i, const Frame<Taylor<double>>& j,
+                         const CurvePlace& place) const override {
+    return plain_->measure(i, j, place);
   }
-  DesignGradient measure(const Frame<DesignGradient>& i, const Frame<DesignGradient>& j) const override {
-    return slide_.measure(i, j);
+  Gradient measure(const Frame<Gradient>& i, const Frame<Gradient>& j, const CurvePlace& place) const override {
+    return plain_->measure(i, j, place);
+  }
+  Second measure(const Frame<Second>& i, const Frame<Second>& j, const CurvePlace& place) const override {
+    return plain_->measure(i, j, place);
+  }
+  DesignScalar measure(const Frame<DesignScalar>& i, const Frame<DesignScalar>& j,
+                       const CurvePlace& place) const override {
+    return slide_.measure(i, j, place);
+  }
+  Taylor<DesignScalar> measure(const Frame<Taylor<DesignScalar>>& i, const Frame<Taylor<DesignScalar>>& j,
+                               const CurvePlace& place) const override {
+    return slide_.measure(i, j, place);
+  }
+  DesignGradient measure(const Frame<DesignGradient>& i, const Frame<DesignGradient>& j,
+                         const CurvePlace& place) const override {
+    return slide_.measure(i, j, place);
   }
 
  private:

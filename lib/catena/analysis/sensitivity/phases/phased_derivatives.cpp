@@ -12,8 +12,8 @@ namespace catena {
 PhasedDerivatives::~PhasedDerivatives() = default;
 
 PhasedDerivatives::PhasedDerivatives(PhasedDesign design, GivenByModel start, std::shared_ptr<InstantRates> rates)
-    : StateDerivatives(Evaluator(Plan::make(*design.contacts.model, design.all_rows), *design.contacts.model),
-                       design.models, design.parameters),
+    : StateDerivatives(Plan::make(*design.contacts.model, design.all_rows), *design.contacts.model, design.models,
+                       design.parameters),
       n_(at(plan().coordinates())),
       models_(std::move(design.models)),
       contacts_(std::move(design.contacts)),
@@ -84,7 +84,8 @@ bool PhasedDerivatives::start(double t, std::span<const double> q_values, std::s
   for (const VelocityJump& jump : phase_.jumps) {
     if (!jump.places.empty()) return fail("the motion begins with an impact: earlier or later are different motions");
   }
-  Evaluator open(open_plan_, *contacts_.model);
+  EvaluationWork work;
+  Evaluator open(open_plan_, *contacts_.model, work);
   open.go_to_curve_places(evaluator().curve_places());
   open.set_time(t);
   open.set_configuration(q_values);

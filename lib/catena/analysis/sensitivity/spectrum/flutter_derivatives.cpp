@@ -24,7 +24,7 @@ using ComplexMatrix = Eigen::SparseMatrix<Complex>;
 constexpr double one_vector = 1e-9;
 
 /// K - z M with Phi_q over columns and rows of the plan, or its transpose; `mass` over both.
-ComplexMatrix saddle_of(Evaluator& evaluator, std::span<const double> jacobian, std::span<const double> lambda,
+ComplexMatrix saddle_of(const Evaluator& evaluator, std::span<const double> jacobian, std::span<const double> lambda,
                         const Eigen::VectorXd& mass, Complex z, bool transpose) {
   const Plan& plan = evaluator.plan();
   std::vector<Eigen::Triplet<Complex>> entries;

@@ -58,7 +58,8 @@ class ResidualDerivatives final : public StateDerivatives {
 
 std::optional<std::vector<double>> limit_load_gradient(const Evaluator& evaluator, const DesignModels& models,
                                                        int parameters, const StaticPlace& place, std::string& why) {
-  Evaluator here(evaluator);
+  EvaluationWork work;
+  Evaluator here(evaluator, work);
   const Plan& plan = here.plan();
   here.set_time(place.t);
   here.set_configuration(place.q);
