@@ -1,10 +1,14 @@
 // catena run, and the verbs that run a single analysis with its keys as options.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <string>
 #include <string_view>
 
+#include "catena/analysis/dynamics/dynamics_options.hpp"
 #include "commands.hpp"
 #include "result_folder.hpp"
 #include "run_command.hpp"
@@ -36,6 +40,7 @@ struct Verb {
 };
 
 const std::vector<Verb>& verbs() {
+  static const std::string methods = fmt::format("integrator: {}", fmt::join(integration_methods, ", "));
   static const std::vector<Verb> all = {
       {"check", "check", "Count bodies, equations, degrees of freedom; find redundant constraints", {}},
       {"assemble", "assemble", "Find the configuration nearest to the given one that meets all constraints", {outputs}},
@@ -53,7 +58,7 @@ const std::vector<Verb>& verbs() {
        {until,
         every,
         tolerance,
-        {"method", "integrator: auto, rk8, rk5, baumgarte, adams, partitioning, radau, alpha, rattle"},
+        {"method", methods},
         {"step", "fixed step"},
         {"max_steps", "largest number of steps"},
         outputs}},
