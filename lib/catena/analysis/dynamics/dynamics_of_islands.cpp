@@ -249,7 +249,9 @@ class DynamicsOfIslands::Part final : public RowObserver {
 
 DynamicsOfIslands::DynamicsOfIslands(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                                      const DynamicsOptions& options, const std::vector<std::vector<int>>& classes)
-    : model_(std::move(model)), plan_(plan_of_all(required(model_), plan_options)), evaluator_(plan_, *model_, evaluation_) {
+    : model_(std::move(model)),
+      plan_(plan_of_all(required(model_), plan_options)),
+      evaluator_(plan_, *model_, evaluation_) {
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
   qdd_.assign(q_.size(), 0.0);
