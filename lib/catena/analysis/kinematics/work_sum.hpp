@@ -78,7 +78,7 @@ class WorkSum {
   double energy_scale(const Snapshot& now) const;
 
   std::optional<EnergyAccount> account_;  // while work is summed up
-  Evaluator* evaluator_ = nullptr;
+  const Evaluator* evaluator_ = nullptr;
   PowerSamples samples_;
   std::vector<double> work_, power_, cubic_part_, driver_work_, work_before_;
   double initial_energy_ = 0;

@@ -143,9 +143,7 @@ void StepEnergy::restore_work(const Motion& motion, const BalancedEnds& step) co
   double doubts = 0;
   for (std::size_t k = first; k < work.size(); ++k) doubts += doubt(k);
   if (!(doubts > 0)) return;
-  std::vector<double> parts(work.size(), 0.0);
-  for (std::size_t k = first; k < work.size(); ++k) parts[k] = doubt(k) / doubts;
-  for (std::size_t k = first; k < work.size(); ++k) work[k] += missing * parts[k];
+  for (std::size_t k = first; k < work.size(); ++k) work[k] += missing * (doubt(k) / doubts);
 }
 
 }  // namespace catena
