@@ -91,7 +91,7 @@ struct Least {
 };
 Least least_by_svd(const MatrixXd& phi, const VectorXd& w, const VectorXd& b) {
   const VectorXd root = inverse(w).cwiseSqrt();
-  const SingularValues svd = singular_values(phi * root.asDiagonal());
+  const testing::SingularValues svd = testing::singular_values(phi * root.asDiagonal());
   const Eigen::Index rank = svd.rank(1e-10);
   const double least = rank > 0 ? svd.values[rank - 1] : 1;
   return {root.asDiagonal() * svd.solve(b, rank), least > 1e-4 * svd.values[0] ? svd.values[0] / least : INFINITY,
@@ -151,7 +151,7 @@ TEST(ConstraintSolver, CompliantRowsAreMetInPart) {
     solver.solve(view(b), view(x), view(lambda), counters);
     const MatrixXd transposed = inverse(w).asDiagonal() * linkage.phi.transpose();
     const MatrixXd full = linkage.phi * transposed + MatrixXd(compliance.asDiagonal());
-    const VectorXd expected = solve<double>(full, b);
+    const VectorXd expected = testing::solve<double>(full, b);
     EXPECT_LE((lambda - expected).norm(), 1e-9 * expected.norm()) << seed;
     EXPECT_LE((x - transposed * expected).norm(), 1e-9 * x.norm()) << seed;
     // What is asked for without compliance afterwards has none.
@@ -171,7 +171,7 @@ VectorXd dense_motion(const Linkage& linkage, const VectorXd& mass, const Vector
   full.bottomLeftCorner(rows, n) = linkage.phi;
   VectorXd right(n + rows);
   right << Q, gamma;
-  const SingularValues svd = singular_values(full);
+  const testing::SingularValues svd = testing::singular_values(full);
   const Eigen::Index rank = svd.rank(1e-11);
   if (svd.values[rank - 1] < 1e-4 * svd.values[0]) return {};
   return svd.solve(right, rank).head(n);
