@@ -11,14 +11,10 @@
 namespace catena {
 namespace {
 
-// Where no longer step can be made the path ends; in the units of options.arc.
-constexpr double shortest_arc = 1e-9;
 // Steps shorter than this part of the usual one are kept though a critical point in them could not be located.
 constexpr double unlocated_step = 1e-4;
 // Iterations up to which the next step may be longer.
 constexpr int few_iterations = 4;
-// The cosine between the directions at both ends of a step, at least.
-constexpr double largest_bend = 0.9;
 // Rad: what a path may turn to one side and back between two points without being looked at more closely.
 constexpr double unseen_turn = 1e-3;
 // How far the end may be from where the tangent meets it, in parts of the way.
@@ -205,6 +201,10 @@ Path::March::Progress Path::March::step() {
     const PathStability modes = *found;
     PathPoint direction = system_.tangent(next, direction_);
     if (system_.product(direction, direction_) < largest_bend || !is_smooth(next, direction)) {
+      Side behind;
+      bool written = false;
+      if (find_corner(trial.s, behind) && go_round(std::move(behind), written))
+        return written ? Progress::going : Progress::cancelled;
       length_ *= 0.5;
       continue;
     }
@@ -236,6 +236,16 @@ Path::March::Progress Path::March::step() {
     if (trial.iterations <= few_iterations) length_ = std::min(1.5 * length_, options_.arc);
     return Progress::going;
   }
+  // Nothing ahead: the path ends, or turns back where a stiffness jumps.
+  if (system_.refused_value() || unjudged_) return Progress::stuck;
+  Side behind;
+  bool written = false;
+  if (find_turn(behind) && go_round(std::move(behind), written)) {
+    length_ = 1e-3 * options_.arc;
+    return written ? Progress::going : Progress::cancelled;
+  }
+  system_.forget_refused_value();
+  unjudged_.reset();
   return Progress::stuck;
 }
 

@@ -24,6 +24,11 @@
 
 namespace catena {
 
+/// Where no longer step can be made the path ends, and corners are located to this; in the units of options.arc.
+inline constexpr double shortest_arc = 1e-9;
+/// The cosine between the directions at both ends of a step, at least.
+inline constexpr double largest_bend = 0.9;
+
 class Path::March {
  public:
   March(Path& path, const std::function<bool(double, const Snapshot&)>& observe)
@@ -80,6 +85,19 @@ class Path::March {
   };
   // Solves a step of the present length, cut short where it passes the end of the path or a change. False: too long.
   bool find_next(Trial& trial);
+  // A point ahead with the path's direction there.
+  struct Side {
+    double s = 0;
+    PathPoint point, direction;
+  };
+  double angle(const PathPoint& a, const PathPoint& b) const;
+  bool solve_at(double s, Side& side);
+  // Whether the path has a corner within a step by `s`, and its point just behind.
+  bool find_corner(double s, Side& behind);
+  // The same where the path turns back at the present point, so that nothing lies ahead.
+  bool find_turn(Side& behind);
+  // To the point behind a corner; `written`: not cancelled. False, and nothing done, where something else comes first.
+  bool go_round(Side behind, bool& written);
   // From the present point to the next one.
   Progress step();
   // Rows and records of the critical points in a step; `left`: the path went over to another branch. False: cancelled.
