@@ -210,6 +210,14 @@ void AnalysisReader::check_method(const JsonValue& object, const AnalysisTask& t
   if (is_rattle && !(task.number("step", 0) > 0))
     error(object.find("method"),
           "method \"rattle\" makes steps of one length, which its accuracy follows from: give \"step\", s");
+  if (const double tolerance = task.number("tolerance", DynamicsOptions{}.tolerance); tolerance >= 1) {
+    error(object.find("tolerance"),
+          fmt::format("\"tolerance\" of dynamics is a relative error and must be below 1; it is {}", tolerance));
+  } else if (tolerance > 0 && tolerance < DynamicsOptions::least_tolerance) {
+    error(object.find("tolerance"),
+          fmt::format("\"tolerance\" of dynamics must be {} or more, which double precision holds; it is {}",
+                      DynamicsOptions::least_tolerance, tolerance));
+  }
   if (const double rho = task.number("rho", 0); rho > 1)
     error(object.find("rho"),
           fmt::format("\"rho\" of dynamics is what a step leaves of a fast vibration, 0 ... 1; it is {}", rho));
