@@ -121,17 +121,17 @@ std::string taken_as_open(const std::string& names) {
       names);
 }
 
+std::string taken_as_rigid(const Evaluator& evaluator, const ActiveSet& set) {
+  const std::string names = first_names(
+      evaluator, set.closed, [&](int element) { return compliance_of(evaluator.model(), element).compliant(); });
+  if (names.empty()) return {};
+  return fmt::format("the stiffness k of {} counts in motion alone: at rest, and in these results, it is rigid", names);
+}
+
 std::vector<std::string> remarks_on(const Evaluator& evaluator, const ActiveSet& set) {
   std::vector<std::string> remarks;
   if (const std::string names = names_of_weak(evaluator, set); !names.empty()) remarks.push_back(taken_as_open(names));
-  const std::string names = first_names(
-      evaluator, set.closed, [&](int element) { return compliance_of(evaluator.model(), element).compliant(); });
-  if (!names.empty()) {
-    remarks.push_back(
-        fmt::format("the stiffness k of {} counts in motion alone: at rest, and in these results, it is "
-                    "rigid",
-                    names));
-  }
+  if (std::string rigid = taken_as_rigid(evaluator, set); !rigid.empty()) remarks.push_back(std::move(rigid));
   return remarks;
 }
 

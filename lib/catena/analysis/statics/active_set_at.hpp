@@ -49,6 +49,8 @@ Compliance compliance_of(const Model& model, int element);
 
 /// The remark on weak elements, with these names.
 std::string taken_as_open(const std::string& names);
+/// The remark on closed elements whose stiffness counts in motion only; empty: there are none.
+std::string taken_as_rigid(const Evaluator& evaluator, const ActiveSet& set);
 /// Remarks on a set: weak elements that are taken as open, and closed ones whose stiffness counts in motion only.
 std::vector<std::string> remarks_on(const Evaluator& evaluator, const ActiveSet& set);
 

@@ -175,6 +175,8 @@ EquilibriumReport Equilibrium::solve() {
   }
   if (result.report.ok()) {
     tell_rank(evaluator_, result, report);
+    if (std::string rigid = taken_as_rigid(evaluator_, result.gaps); !rigid.empty())
+      result.report.warnings.push_back(std::move(rigid));
     if (!result.dependent_rows.empty()) choose_least_reactions(result.report);
   }
   return end(std::move(result.report));

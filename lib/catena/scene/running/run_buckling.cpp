@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "catena/analysis/run/rope_ways_at.hpp"
+#include "catena/analysis/run/weightless_bodies.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/buckling.hpp"
 #include "catena/columns/column_errors.hpp"
@@ -171,6 +172,8 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
       plan_options(*context.model, {}, start));
   analysis.start_from(start);
   BucklingReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
+  if (std::string remark = remark_on_weightless(*context.model, analysis.plan()); !remark.empty())
+    report.warnings.push_back(std::move(remark));
   std::vector<ColumnInfo> info;
   const std::int64_t rows = give_rows(context, analysis, report, info);
   draw_shapes(context, analysis.evaluator(), start.t, analysis.q(), report.shapes);

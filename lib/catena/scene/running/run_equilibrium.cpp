@@ -11,6 +11,7 @@
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/weightless_bodies.hpp"
 #include "catena/analysis/sensitivity/static_derivatives.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/analysis/statics/solvers/static_ipopt.hpp"
@@ -49,6 +50,8 @@ void run_holding(AnalysisContext& context, AnalysisResult& result) {
     context.state.ropes = ways.turns(context.state);
     result.fields = {{"held", holding.held()}};
     if (holding.utilisation) result.fields.push_back({"utilisation", *holding.utilisation});
+    if (std::string remark = remark_on_weightless(*context.model, evaluator.plan()); !remark.empty())
+      report.warnings.push_back(std::move(remark));
     if (!holding.utilisation) report.warnings.emplace_back("no friction, however large, can hold this position");
   }
   report.counters = evaluator.counters;
@@ -250,6 +253,8 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   context.state = analysis.state();
   if (report.ok()) context.state.ropes = ways.turns(context.state);
   warn_of_friction(*context.model, report);
+  if (std::string remark = remark_on_weightless(*context.model, analysis.plan()); !remark.empty())
+    report.warnings.push_back(std::move(remark));
   for (NamedField& field : fields_of(report, !analysis.plan().gap_rows.empty()))
     result.fields.push_back(std::move(field));
   if (report.ok()) draw_softest_mode(context);

@@ -8,6 +8,7 @@
 #include "catena/analysis/measures/measure_set.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
+#include "catena/analysis/run/weightless_bodies.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/path.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -155,6 +156,8 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   if (report.ok() && rows > 0) context.values_at_end = {{parameter, row[0]}};
   result.fields = fields_of(report, *context.model, !analysis.plan().gap_rows.empty());
   result.report = report;
+  if (std::string remark = remark_on_weightless(*context.model, analysis.plan()); !remark.empty())
+    result.report.warnings.push_back(std::move(remark));
   if (accuracy) result.digits = accuracy->digits(report);
   for (const std::string& note : columns.notes()) result.report.warnings.push_back(note);
   take_rows(result, std::move(info), rows);
