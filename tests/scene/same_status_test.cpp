@@ -167,5 +167,31 @@ TEST(SameStatus, ColumnsAtTheirBucklingLoadAskForABranch) {
   }
 }
 
+// A slider-crank whose pin A is repeated by A2: what presses A alone, and rubs in it, nothing determines.
+TEST(SameStatus, FrictionOfAJointThatAnotherRepeats) {
+  const auto run_with = [](const std::string& more, const std::string& analysis) {
+    return run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {
+        "c": {"mass": 1, "rod": {"from": [0, 0], "to": [0.1, 0]}},
+        "r": {"mass": 1, "rod": {"from": [0.1, 0], "to": [0.4, 0]}},
+        "p": {"mass": 1, "inertia": 0.01, "position": [0.4, 0]}},
+      "constraints": [{"type": "revolute", "name": "O", "i": "ground", "j": "c.from"},
+        {"type": "revolute", "name": "A", "i": "c.to", "j": "r.from"},
+        {"type": "revolute", "name": "B", "i": "r.to", "j": "p"})" +
+                    more + R"(,
+        {"type": "translational", "i": "ground", "j": "p", "axis_i": [1, 0], "axis_j": [1, 0]}],
+      "drivers": [{"type": "absolute_angle", "name": "d", "i": "c", "value": {"polynomial": [0, 3]}}],
+      "forces": [{"type": "friction", "name": "f", "joint": "A", "mu": 0.2, "radius": 0.01}],
+      "outputs": ["d.load"], "analyses": [)" +
+                    analysis + "]}");
+  };
+  for (const std::string type : {"inverse_dynamics", "dynamics"}) {
+    const std::string analysis = R"({"type": ")" + type + R"(", "until": 1, "every": 0.5})";
+    EXPECT_EQ(run_with("", analysis).analysis().report.status, Status::ok);
+    const TextRun run = run_with(R"(, {"type": "revolute", "name": "A2", "i": "c.to", "j": "r.from"})", analysis);
+    EXPECT_EQ(run.analysis().report.status, Status::refused) << type << run.analysis().report.message;
+    EXPECT_NE(run.analysis().report.message.find("\"A\""), std::string::npos) << run.analysis().report.message;
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -7,11 +7,26 @@
 #include <limits>
 #include <utility>
 
+#include "catena/analysis/contact/contact_points.hpp"
+#include "catena/analysis/contact/unclear_friction.hpp"
 #include "catena/analysis/motion/initial_velocities.hpp"
+#include "catena/analysis/pose/minimum_norm.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
+namespace {
+
+// Where constraints are redundant, at a place that is not singular: the friction of joints needs their reactions.
+Report check_joint_friction(Evaluator& evaluator, std::span<const double> q) {
+  if (joints_with_friction(evaluator.model()).empty()) return {};
+  evaluator.set_configuration(q);
+  MinimumNorm reactions(evaluator);
+  return reactions.factorize() ? refuse_unclear_friction(evaluator.model(), reactions.find_ambiguous()) : Report{};
+}
+
+}  // namespace
+
 Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const DynamicsOptions& options)
     : model_(std::move(model)),
       plan_(Plan::make(required(model_), plan_options)),
@@ -46,8 +61,10 @@ Report Dynamics::check_options() const {
   if (!(options_.tolerance >= DynamicsOptions::least_tolerance) || !(options_.tolerance < 1)) {
     report.status = Status::refused;
     report.message =
-        fmt::format("tolerance {:.3g} cannot be met: double precision holds about {:.0e}; give {:.0e} ... 1",
-                    options_.tolerance, DynamicsOptions::least_tolerance, DynamicsOptions::least_tolerance);
+        options_.tolerance >= 1
+            ? fmt::format("tolerance {:.3g} is no relative error: give one below 1", options_.tolerance)
+            : fmt::format("tolerance {:.3g} cannot be met: double precision holds about {:.0e}; give {:.0e} ... 1",
+                          options_.tolerance, DynamicsOptions::least_tolerance, DynamicsOptions::least_tolerance);
   } else if (!(options_.step >= 0) || !std::isfinite(options_.step) || options_.max_steps < 1) {
     report.status = Status::refused;
     report.message = fmt::format(
@@ -81,6 +98,10 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
     elsewhere = place_along(*start);
   }
   redundant_.find(q_, elsewhere ? &*elsewhere : nullptr);
+  if (redundant_.count() > 0) {
+    if (Report unclear = check_joint_friction(evaluator_, elsewhere ? elsewhere->q : q_); !unclear.ok()) return unclear;
+    evaluator_.set_configuration(q_);
+  }
   if (Report massless = equations_.check_massless(q_); !massless.ok()) return massless;
   const VelocityOutcome velocities = find_initial_velocities(equations_, q_, origin_.given_qd, qd_);
   if (velocities.dead_point) run_.singular_points.push_back(*velocities.dead_point);
