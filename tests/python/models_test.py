@@ -38,6 +38,9 @@ class Classes(unittest.TestCase):
             catena.Revolute(ii="ground", j="a")
         with self.assertRaisesRegex(TypeError, "Revolute needs i"):
             catena.Revolute(j="a")
+        for add in (catena.Model().add, catena.Model().drive):
+            with self.assertRaisesRegex(TypeError, "3 is no constraint, driver or force"):
+                add(3)
         pin = catena.Revolute(i="ground", j="a")
         with self.assertRaisesRegex(TypeError, "radius"):
             pin.radius = 1

@@ -45,6 +45,11 @@ def _plain(value: Any, where: str) -> Any:
     raise TypeError(f"{where}: a scene cannot hold {value!r}")
 
 
+def _expect_element(element: object) -> None:
+    if not isinstance(element, Element):
+        raise TypeError(f"{element!r} is no constraint, driver or force")
+
+
 class Block:
     """Bodies and elements, and blocks of them that are repeated."""
 
@@ -67,11 +72,13 @@ class Block:
     def add(self, *elements: Element) -> None:
         """Adds constraints and forces."""
         for element in elements:
+            _expect_element(element)
             self._lists[element.section].append(self._given(element))
 
     def drive(self, *elements: Element) -> None:
         """Adds drivers: scalar constraints whose value is a function of time."""
         for element in elements:
+            _expect_element(element)
             if not element.can_be_driven:
                 raise TypeError(f"{type(element).__name__} cannot be a driver: it has no single value to prescribe")
             if getattr(element, "value", None) is None:
