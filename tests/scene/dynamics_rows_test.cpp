@@ -238,6 +238,22 @@ TEST(DynamicsRows, WarningsHaveUnitsAndReasons) {
   EXPECT_TRUE(says(caught.analysis(), " rad/s (body \"b\")"));
 }
 
+// y'' + 2 y' + 100 y = -10 from rest at zero, where the spring has no direction: without a column of energy as with it.
+TEST(DynamicsRows, ADamperMayBeginWithoutALength) {
+  for (const std::string energy : {"", R"(, "energy.balance")"}) {
+    const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -10], "bodies": {"p": {"particle": true, "mass": 1}},
+      "constraints": [{"type": "absolute_x", "i": "p", "value": 0},
+                      {"type": "absolute_y", "name": "pin", "i": "p", "value": 0}],
+      "forces": [{"type": "spring_damper", "i": "ground", "j": "p", "k": 100, "c": 2, "length": 0}],
+      "outputs": ["p.y")" + energy +
+                                 R"(], "analyses": [{"type": "dynamics", "until": 2, "events": [
+        {"name": "breaks", "when": "t", "value": 1, "action": "release", "element": "pin"}]}]})");
+    ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
+    const double w = std::sqrt(99.0);
+    EXPECT_NEAR(run.last("p.y"), -0.1 * (1 - std::exp(-1.0) * (std::cos(w) + std::sin(w) / w)), 1e-8);
+  }
+}
+
 // A frame that nothing can move, of independent constraints: what rounding leaves of the velocities is no motion, and
 // its energy none to be watched.
 // A rod that is let go level comes to rest level on the other side after 2 K sqrt(2 l / 3 g), K = K(sin 45 deg); in so
