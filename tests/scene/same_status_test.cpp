@@ -193,5 +193,26 @@ TEST(SameStatus, FrictionOfAJointThatAnotherRepeats) {
   }
 }
 
+// A crank and the slider that it moves are both driven.
+TEST(SameStatus, ContradictingDriversAreNamed) {
+  for (const std::string analysis : {"dynamics", "kinematics"}) {
+    const TextRun run = run_text(R"({"catena": 1,
+      "bodies": {"c": {"mass": 1, "rod": {"from": [0, 0], "to": [0.1, 0]}},
+                 "r": {"mass": 1, "rod": {"from": [0.1, 0], "to": [0.4, 0]}},
+                 "p": {"mass": 1, "inertia": 0.01, "position": [0.4, 0]}},
+      "constraints": [{"type": "revolute", "name": "O", "i": "ground", "j": "c.from"},
+        {"type": "revolute", "name": "A", "i": "c.to", "j": "r.from"},
+        {"type": "revolute", "name": "B", "i": "r.to", "j": "p"},
+        {"type": "translational", "name": "G", "i": "ground", "j": "p", "axis_i": [1, 0], "axis_j": [1, 0]}],
+      "drivers": [{"type": "absolute_angle", "name": "d", "i": "c", "value": {"polynomial": [0, 3]}},
+                  {"type": "absolute_x", "name": "d2", "i": "p", "value": {"polynomial": [0.4, 0.1]}}],
+      "analyses": [{"type": ")" + analysis +
+                                 R"(", "until": 1, "every": 0.1}]})");
+    EXPECT_EQ(run.analysis().report.status, Status::inconsistent) << analysis;
+    EXPECT_NE(run.analysis().report.message.find("\"d2\""), std::string::npos) << run.analysis().report.message;
+    EXPECT_NE(run.analysis().report.message.find(" m/s"), std::string::npos) << run.analysis().report.message;
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -71,27 +71,11 @@ Report RowChoice::check_rates(const DrivenInstant& now, double allowed, bool in_
   return check(now.qdd, speed * speed, "acceleration", "s^2");
 }
 
-// The other elements of a dependence that this one belongs to. Drivers first: they are the most likely cause of a
-// contradiction.
-std::vector<int> RowChoice::elements_against(int element, std::span<const double> q) {
-  const MobilityReport mobility = analyse_mobility(evaluator_, q);
-  for (std::size_t k = 0; k < mobility.redundant_elements.size(); ++k) {
-    std::vector<int> all = mobility.dependent_on[k];
-    all.push_back(mobility.redundant_elements[k]);
-    if (std::find(all.begin(), all.end(), element) == all.end()) continue;
-    std::stable_partition(all.begin(), all.end(),
-                          [&](int e) { return evaluator_.model().elements[at(e)].kind == ElementKind::driver; });
-    std::erase(all, element);
-    return all;
-  }
-  return {};
-}
-
 // `inconsistent`: names the element of an equation and the elements that it contradicts.
 Report RowChoice::contradicts(const DrivenInstant& now, int row, const std::string& how) {
   const Model& model = evaluator_.model();
   const int element = plan_.row_element[at(row)];
-  const std::string names = element_names(model, elements_against(element, now.q));
+  const std::string names = element_names(model, elements_against(analyse_mobility(evaluator_, now.q), model, element));
   Report report;
   report.status = Status::inconsistent;
   report.message =

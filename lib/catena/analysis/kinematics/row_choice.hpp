@@ -51,7 +51,6 @@ class RowChoice {
  private:
   Report contradicts(const DrivenInstant& now, int row, const std::string& how);
   const char* unit_of(int row) const;
-  std::vector<int> elements_against(int element, std::span<const double> q);
 
   Evaluator& evaluator_;
   const Plan& plan_;

@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "catena/analysis/pose/dead_point.hpp"
+#include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/pose/scaling.hpp"
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/assembly/systems/constraint_solver.hpp"
 #include "catena/base/at.hpp"
@@ -66,12 +68,18 @@ void report_contradiction(Evaluator& evaluator, std::span<const double> q, int w
     static_cast<Report&>(outcome) = outcome.dead_point->report_lock_up(evaluator.model());
     return;
   }
-  const int element = worst < 0 ? 0 : evaluator.plan().row_element[at(worst)];
+  const Plan& plan = evaluator.plan();
+  const Model& model = evaluator.model();
+  const int element = worst < 0 ? 0 : plan.row_element[at(worst)];
+  const std::string against = element_names(model, elements_against(analyse_mobility(evaluator, q), model, element));
   outcome.status = Status::inconsistent;
   outcome.message = fmt::format(
-      "no velocities meet all constraints and drivers at t = {:.12g} s: {} \"{}\" misses by {:.3g}; likely cause: "
+      "no velocities meet all constraints and drivers at t = {:.12g} s: {} \"{}\"{} misses by {:.3g} {}/s; likely "
+      "cause: "
       "drivers that contradict each other, or a driver that starts with a jump",
-      evaluator.time(), evaluator.model().element_type(element), evaluator.model().element_name(element), left);
+      evaluator.time(), model.element_type(element), model.element_name(element),
+      against.empty() ? "" : " contradicts " + against + " and", left,
+      worst >= 0 && plan.row_is_angle[at(worst)] ? "rad" : "m");
 }
 
 /// The equations of velocities at the evaluator's configuration.

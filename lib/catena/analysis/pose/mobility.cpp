@@ -119,4 +119,17 @@ MobilityReport analyse_mobility(Evaluator& evaluator, std::span<const double> q)
   return report;
 }
 
+std::vector<int> elements_against(const MobilityReport& mobility, const Model& model, int element) {
+  for (std::size_t k = 0; k < mobility.redundant_elements.size(); ++k) {
+    std::vector<int> all = mobility.dependent_on[k];
+    all.push_back(mobility.redundant_elements[k]);
+    if (std::find(all.begin(), all.end(), element) == all.end()) continue;
+    std::stable_partition(all.begin(), all.end(),
+                          [&](int e) { return model.elements[at(e)].kind == ElementKind::driver; });
+    std::erase(all, element);
+    return all;
+  }
+  return {};
+}
+
 }  // namespace catena

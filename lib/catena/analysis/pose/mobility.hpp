@@ -34,4 +34,8 @@ struct MobilityReport {
 /// Rank analysis at the configuration q (plan order) and the evaluator's time.
 MobilityReport analyse_mobility(Evaluator& evaluator, std::span<const double> q);
 
+/// The other elements of a dependence that this one belongs to; none if it belongs to none. Drivers first: they are the
+/// most likely cause of a contradiction.
+std::vector<int> elements_against(const MobilityReport& mobility, const Model& model, int element);
+
 }  // namespace catena
