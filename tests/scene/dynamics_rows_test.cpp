@@ -217,6 +217,15 @@ TEST(DynamicsRows, EndAfterTheStepsAllowed) {
   ASSERT_EQ(enough.outcome.exit_code, 0);
   const auto& counters = enough.analysis().report.counters;
   EXPECT_EQ(falling(std::to_string(counters.steps + counters.rejected)).outcome.exit_code, 0);
+  // 1 s in steps of 0.01 s.
+  for (const std::string method : {"rk8", "rk5", "radau", "alpha", "rattle"}) {
+    const std::string fixed = R"(, "step": 0.01, "method": ")" + method + "\"";
+    const TextRun cut = falling("50" + fixed);
+    EXPECT_EQ(cut.analysis().report.status, Status::not_converged) << method;
+    EXPECT_TRUE(says(cut.analysis(), "50 steps of 0.01 s led to t = 0.5 s, more than max_steps = 50 are needed"))
+        << cut.analysis().report.message;
+    EXPECT_EQ(falling("101" + fixed).outcome.exit_code, 0) << method;
+  }
 }
 
 TEST(DynamicsRows, WarningsHaveUnitsAndReasons) {

@@ -159,20 +159,29 @@ std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, doub
   return std::make_unique<RungeKutta>(motion, options);
 }
 
-// Ends a run at once if at its present pace it would take hours.
+// Ends a run that has used up its steps, and at once one that would take hours at its present pace. Fixed steps are as
+// they were asked for.
 Report Dynamics::check_pace(double last) {
   Report report;
-  if (options_.step > 0) return report;
+  const bool fixed = options_.step > 0;
   const std::int64_t steps = evaluator_.counters.steps + evaluator_.counters.rejected;
   const bool used_up = steps - pace_.first_step >= options_.max_steps && t_ < last;
   bool hopeless = false;
-  if (steps - pace_.step >= steps_of_a_pace) {
+  if (!fixed && steps - pace_.step >= steps_of_a_pace) {
     const double pace = (t_ - pace_.t) / static_cast<double>(steps - pace_.step);
     hopeless = last - t_ > 10 * pace * static_cast<double>(options_.max_steps);
     pace_.step = steps;
     pace_.t = t_;
   }
   if (!used_up && !hopeless) return report;
+  if (fixed) {
+    report.status = Status::not_converged;
+    report.message = fmt::format(
+        "{} steps of {:.3g} s led to t = {:.12g} s, more than max_steps = {} are needed; give a larger step or "
+        "max_steps",
+        steps - pace_.first_step, options_.step, t_, options_.max_steps);
+    return report;
+  }
   if (std::optional<Report> locked = lock_up_ahead()) return *locked;
   // At a hopeless pace the steps are too small; otherwise the bound was reached.
   report.status = hopeless ? Status::step_too_small : Status::not_converged;
