@@ -233,9 +233,10 @@ TEST(DynamicsRows, WarningsHaveUnitsAndReasons) {
     "constraints": [{"type": "absolute_y", "i": "b", "value": 0}, {"type": "absolute_angle", "i": "b", "value": 0.5}],
     "drivers": [{"type": "absolute_x", "name": "D", "i": "b", "value": {"polynomial": [0, 0, 2]}}],
     "analyses": [{"type": "dynamics", "until": 3, "events": [
-      {"name": "off", "when": "t", "value": 1.5, "action": "release", "element": "D"},
-      {"name": "on", "when": "b.x", "value": 100, "action": "engage", "element": "D"}]}]})");
+      {"name": "on", "when": "b.x", "value": 100, "action": "engage", "element": "D"},
+      {"name": "off", "when": "t", "value": 1.5, "action": "release", "element": "D"}]}]})");
   EXPECT_TRUE(says(run.analysis(), "\"D\" does not hold from the start, since event \"on\" engages it"));
+  EXPECT_TRUE(says(run.analysis(), "put \"off\" first in the list"));
   EXPECT_TRUE(says(run.analysis(), "shifted bodies by up to 0 m and turned them by up to 0.5 rad"));
 
   const TextRun caught = run_text(R"({"catena": 1, "gravity": [0, -9.81],

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "scene/event_entries.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
@@ -72,6 +73,43 @@ TEST(ReleasedConstraints, OfADrivenMotionStayReleased) {
   ASSERT_EQ(run.outcome.analyses.size(), 2U);
   ASSERT_TRUE(run.analysis(1).report.ok()) << run.analysis(1).report.message;
   EXPECT_NEAR(run.last("p.y", 1), 0.5 + 1 - 5, 1e-6);
+}
+
+// A lock that opens and may close again holds from the start. A rod that it lets go level is at its lowest place after
+// K sqrt(2 l / 3 g), K = K(sin 45 deg).
+TEST(ReleasedConstraints, HoldFromTheStartWhatIsReleasedFirst) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81],
+    "bodies": {"a": {"mass": 1, "rod": {"from": [0, 0], "to": [1, 0]}}},
+    "constraints": [{"type": "revolute", "name": "O", "i": "ground", "j": "a.from"},
+                    {"type": "absolute_angle", "name": "lock", "i": "a", "value": 0}],
+    "outputs": ["a.angle"], "analyses": [{"type": "dynamics", "until": 1.4, "every": 0.1, "events": [
+      {"name": "go", "when": "t", "value": 0.5, "action": "release", "element": "lock"},
+      {"name": "back", "when": "a.angle", "value": 1, "action": "engage", "element": "lock"},
+      {"name": "low", "when": "=a.angle + pi/2"}]}]})");
+  ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
+  EXPECT_TRUE(run.analysis().report.warnings.empty());
+  const std::vector<double> t = run.column("t"), angle = run.column("a.angle");
+  for (std::size_t k = 0; k < t.size() && t[k] <= 0.5; ++k) EXPECT_NEAR(angle[k], 0, 1e-12) << t[k];
+  const std::vector<EventEntry> events = events_of(run);
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_NEAR(events[1].t, 0.5 + 1.8540746773013719 * std::sqrt(2 / (3 * 9.81)), 1e-7);
+
+  // x = t, between 0.5 s and 1.5 s x = t + (t - 0.5) (t - 1.5).
+  const TextRun driven = run_text(R"({"catena": 1, "bodies": {"a": {"particle": true}},
+    "constraints": [{"type": "absolute_y", "i": "a", "value": 0}],
+    "drivers": [{"type": "absolute_x", "name": "even", "i": "a", "value": {"polynomial": [0, 1]}},
+                {"type": "absolute_x", "name": "bent", "i": "a", "value": {"polynomial": [0.75, -1, 1]}}],
+    "outputs": ["a.x"], "analyses": [{"type": "kinematics", "until": 2, "every": 0.25, "events": [
+      {"when": "t", "value": 0.5, "action": "release", "element": "even"},
+      {"when": "t", "value": 0.5, "action": "engage", "element": "bent"},
+      {"when": "t", "value": 1.5, "action": "release", "element": "bent"},
+      {"when": "t", "value": 1.5, "action": "engage", "element": "even"}]}]})");
+  ASSERT_TRUE(driven.analysis().report.ok()) << driven.analysis().report.message;
+  const std::vector<double> instants = driven.column("t"), x = driven.column("a.x");
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double s = instants[k], bent = s > 0.5 && s < 1.5 ? (s - 0.5) * (s - 1.5) : 0;
+    EXPECT_NEAR(x[k], s + bent, 1e-12) << s;
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "catena/analysis/events/engaged_turns.hpp"
 #include "catena/analysis/events/engagement.hpp"
+#include "catena/analysis/events/first_actions.hpp"
 #include "catena/analysis/run/released_elements.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/base/at.hpp"
@@ -30,21 +31,11 @@ DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const
       model_(given_model_),
       plan_options_(plan_options),
       options_(options) {
-  for (const Event& event : events) {
-    if (event.action != EventAction::release && event.action != EventAction::engage) continue;
-    plan_options_.keep_elements.push_back(event.element);
-    if (event.action == EventAction::engage) plan_options_.released_elements.push_back(event.element);
-  }
-  for (const Event& event : events) {
-    const bool released = std::any_of(events.begin(), events.end(), [&](const Event& other) {
-      return other.action == EventAction::release && other.element == event.element;
-    });
-    if (event.action != EventAction::engage || !released) continue;
-    inactive_.push_back(
-        fmt::format("\"{}\" does not hold from the start, since event \"{}\" engages it, although another event "
-                    "releases it",
-                    model_->element_name(event.element), event.name));
-  }
+  FirstActions first = first_actions(events, *model_);
+  plan_options_.keep_elements.insert(plan_options_.keep_elements.end(), first.acted_on.begin(), first.acted_on.end());
+  plan_options_.released_elements.insert(plan_options_.released_elements.end(), first.released.begin(),
+                                         first.released.end());
+  inactive_ = std::move(first.ambiguous);
   make_dynamics();
   methods_ = {dynamics_->method()};
   watch_ = std::make_unique<EventWatch>(std::move(events), *model_, dynamics_->plan(), sources);

@@ -3,10 +3,10 @@
 // Between events it is Dynamics. At an event that releases or engages a constraint, the motion goes on from there with
 // a plan of the same bodies and other rows. Positions and, on a release, velocities are continuous; on engagement
 // velocities get the least change in the mass metric that meets the constraint (a plastic impact), and the energy lost
-// counts as dissipated. A constraint that an event engages does not hold before. Events of the same instant act in the
-// order of the list, each on the velocities that the one before leaves behind, up to one that stops the analysis.
-// Angles are continuous everywhere: what is engaged after some turns takes its value with it (engaged_turns.hpp). Units
-// as in dynamics.hpp.
+// counts as dissipated. A constraint that an event engages does not hold before (but see first_actions.hpp). Events of
+// the same instant act in the order of the list, each on the velocities that the one before leaves behind, up to one
+// that stops the analysis. Angles are continuous everywhere: what is engaged after some turns takes its value with it
+// (engaged_turns.hpp). Units as in dynamics.hpp.
 //
 // A set of equations that held before has its plan, and the structure of its factors: the last few sets are kept, so
 // that a place that closes, opens, sticks and slips again and again costs numbers alone.

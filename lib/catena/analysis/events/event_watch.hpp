@@ -35,7 +35,7 @@ enum class EventAction {
   record,   ///< a row, nothing else
   stop,     ///< the analysis ends
   release,  ///< a constraint ceases to hold
-  engage,   ///< a constraint begins to hold; it does not before
+  engage,   ///< a constraint begins to hold; whether it does at the start: first_actions.hpp
   strike,   ///< an impulse acts
 };
 

@@ -10,6 +10,7 @@
 
 #include "catena/analysis/events/engaged_turns.hpp"
 #include "catena/analysis/events/engagement.hpp"
+#include "catena/analysis/events/first_actions.hpp"
 #include "catena/analysis/run/released_elements.hpp"
 #include "catena/analysis/run/report_parts.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
@@ -183,19 +184,12 @@ KinematicsWithEvents::KinematicsWithEvents(std::shared_ptr<const Model> model, c
   for (const Event& event : events) {
     if (event.action == EventAction::strike)
       throw std::invalid_argument("event \"" + event.name + "\": an impulse changes no motion that drivers determine");
-    if (event.action != EventAction::release && event.action != EventAction::engage) continue;
-    plan_options_.keep_elements.push_back(event.element);
-    if (event.action != EventAction::engage) continue;
-    plan_options_.released_elements.push_back(event.element);
-    const bool released = std::any_of(events.begin(), events.end(), [&](const Event& other) {
-      return other.action == EventAction::release && other.element == event.element;
-    });
-    if (!released) continue;
-    inactive_.push_back(
-        fmt::format("\"{}\" does not hold from the start, since event \"{}\" engages it, although another event "
-                    "releases it",
-                    model_->element_name(event.element), event.name));
   }
+  FirstActions first = first_actions(events, *model_);
+  plan_options_.keep_elements.insert(plan_options_.keep_elements.end(), first.acted_on.begin(), first.acted_on.end());
+  plan_options_.released_elements.insert(plan_options_.released_elements.end(), first.released.begin(),
+                                         first.released.end());
+  inactive_ = std::move(first.ambiguous);
   make_kinematics();
   watch_ = std::make_unique<EventWatch>(std::move(events), *model_, kinematics_->plan(), sources);
 }

@@ -10,7 +10,8 @@
 // on with a plan of the same bodies and other rows, from the same places; constraints and drivers must then determine
 // it again (`under_driven` if they do not). Velocities may jump there, which asks for no force in kinematics. All
 // events of an instant act together, in the order of the list, up to one that stops the analysis. A constraint that an
-// event engages does not hold before, and must hold where it happens (engagement.hpp). Units: m, rad, s.
+// event engages does not hold before (but see first_actions.hpp), and must hold where it happens (engagement.hpp).
+// Units: m, rad, s.
 #pragma once
 
 #include <memory>

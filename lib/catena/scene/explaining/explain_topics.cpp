@@ -262,7 +262,8 @@ Example
   value       at which it happens, SI units and radians (default 0)
   direction   "any" (default), "up" or "down"
   action      "record" (default): nothing but a row; "stop": the analysis ends there, the next goes on from there;
-              "release": a constraint ceases to hold; "engage": a constraint begins to hold, and does not before;
+              "release": a constraint ceases to hold; "engage": a constraint begins to hold, and does not before
+              unless an event that stands before this one in the list releases it;
               "impulse": a blow, which needs the key of that name and is meant where that stands alone
   element     the constraint or driver that is released or engaged
   impulse     in dynamics: {"i": point, "value": [px, py]}, a blow in ground axes, N s
