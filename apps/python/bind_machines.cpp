@@ -25,13 +25,17 @@ py::array by_body(const Machine::Numbers& numbers) {
   return view_of(numbers, numbers->data(), {numbers->size() / 3, 3}, {3 * size, size});
 }
 
+// After set() as well: the place is kept, what follows from it is not.
+constexpr const char* no_row =
+    "there is no row here yet: step first (move_to, advance_to or solve_at), after set() again";
+
 py::array row_of(const Machine& machine) {
-  if (!machine.row()) throw std::runtime_error("there is no row yet: step first");
+  if (!machine.row()) throw std::runtime_error(no_row);
   return view_of(machine.row(), machine.row()->data(), {machine.row()->size()}, {sizeof(double)});
 }
 
 double value_of_column(const Machine& machine, const std::string& name) {
-  if (!machine.row()) throw std::runtime_error("there is no row yet: step first");
+  if (!machine.row()) throw std::runtime_error(no_row);
   for (std::size_t c = 0; c < machine.columns().size(); ++c) {
     if (machine.columns()[c].name == name) return (*machine.row())[c];
   }
