@@ -27,7 +27,8 @@ void find_joints(const ContactModel& contacts, const Evaluator& evaluator, Force
 
 }  // namespace
 
-Report find_cones(const ContactModel& contacts, const Evaluator& evaluator, ForceColumns& columns, ContactCones& cones) {
+Report find_cones(const ContactModel& contacts, const Evaluator& evaluator, ForceColumns& columns,
+                  ContactCones& cones) {
   for (std::size_t k = 0; k < contacts.points.size(); ++k) {
     const ContactPoint& point = contacts.points[k];
     if (point.kind == ContactKind::grip || point.kind == ContactKind::joint) continue;  // with its rope; below
