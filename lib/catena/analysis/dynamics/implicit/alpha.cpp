@@ -31,8 +31,6 @@ Alpha::Alpha(Motion motion, const AlphaOptions& options, const RungeKuttaOptions
   g_ = 0.5 + af_ - am_;
   b_ = (g_ + 0.5) * (g_ + 0.5) / 4;
   scale_.step_tolerance = options.tolerance;
-  // Of a radian, not of a step: see the header.
-  if (options.fixed_step == 0) scale_.loosen(std::sqrt(12.0), 1.5);
   scale_.horizon = options.horizon;
   scale_.length = motion_.length_scale();
   scale_.set_masses(motion_.equations().masses().mass);

@@ -11,13 +11,7 @@
 // constraints.
 //
 // Of a vibration with h omega >> 1 all three roots are -rho. Error of a step: h^2 |b - 1/6| (A1 - A0) of places, h/12
-// of the second difference of a of velocities.
-//
-// A radian of the motion, one step of a method of high order, takes 1 / (h V) of these: with errors e = (h V)^3 / 12 of
-// each they add up to x = (h V)^2 / 12, so that a tolerance x of the radian is one of e = sqrt(12) x^(3/2) of a step.
-// Steps of e = x^(3/2) / 2 at x = tolerance, in place of the part 0.002 of it that steps of other methods have, were
-// off by 12 tolerances after 16 periods of a spring and by 280 after one turn on a Kepler ellipse of eccentricity 0.6.
-// Source: J. Chung, G. Hulbert, J. Appl. Mech. 60 (1993); M. Arnold, O.
+// of the second difference of a of velocities. Source: J. Chung, G. Hulbert, J. Appl. Mech. 60 (1993); M. Arnold, O.
 // Bruels, Multibody Syst. Dyn. 18 (2007) for constrained motions.
 #pragma once
 
@@ -32,7 +26,7 @@ namespace catena {
 
 struct AlphaOptions {
   double rho = 0.8;
-  double tolerance = 1e-10;  ///< of the error of a radian; of a step's where that is fixed: see error_scale.hpp
+  double tolerance = 1e-10;  ///< of a step's error, see error_scale.hpp
   double fixed_step = 0;     ///< s; 0: adaptive
   double horizon = 0;        ///< s, where the run ends
 };
