@@ -67,7 +67,9 @@ TEST(PathCorners, TurnBackWhereACableCatchesWhatFalls) {
   for (std::size_t k = 0; k < y.size(); ++k) {
     const double load = 2000 * (length / std::sqrt(1 + y[k] * y[k]) - 1) * y[k] + 1000 * std::max(-y[k], 0.0);
     EXPECT_NEAR(P[k], load, 1e-9) << y[k];
-    if (k > 0) EXPECT_LT(y[k], y[k - 1]);
+    if (k > 0) {
+      EXPECT_LT(y[k], y[k - 1]);
+    }
   }
   EXPECT_LT(y.back(), 0);
   EXPECT_TRUE(has_row_near(y, 0, 1e-5));

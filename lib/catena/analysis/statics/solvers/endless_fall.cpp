@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "catena/analysis/balance/descent_rules.hpp"
-#include "catena/analysis/run/thresholds.hpp"
+#include "catena/analysis/spectrum/free_motions.hpp"
 
 namespace catena {
 namespace {
@@ -24,19 +24,19 @@ bool falls_for_ever(StaticSystem& system, std::span<const double> q, std::span<c
   const double size = system.change_norm(direction), energy = system.energy();
   double force = 0;
   for (std::size_t c = 0; c < direction.size(); ++c) force -= direction[c] * system.gradient()[c];
-  // Springs across the line are stretched by the rounding of its direction.
-  const double across = system.matrix().largest_stiffness();
+  // Springs across the line are stretched by what its direction is wrong by: it has no more stiffness than such a part.
+  const double across = neutral_part * system.matrix().absolute_quadratic(direction);
   const double longest = std::cbrt(std::numeric_limits<double>::max()) / system.length();
   bool endless = force > 0 && std::isfinite(size);
   std::vector<double> there;
   const std::vector<CurvePlace> places = system.evaluator().curve_places();
   for (double way = far * system.extent() / system.length(); endless && way < longest; way *= 2) {
-    const double s = way / size, rounding = thresholds::few_roundings * way * system.length();
+    const double s = way / size;
     there.assign(q.begin(), q.end());
     system.advance(there, direction, s, std::numeric_limits<double>::infinity());
     system.move_to(there);
     endless = system.phi_norm() <= std::max(descent::restored, 10 * system.rounding_change()) &&
-              std::abs(energy - system.energy() - force * s) <= bend * force * s + across * rounding * rounding;
+              std::abs(energy - system.energy() - force * s) <= bend * force * s + across * s * s / 2;
   }
   system.evaluator().go_to_curve_places(places);
   system.move_to(q);

@@ -3,8 +3,8 @@
 //   Phi(q + s v) = 0,   V(q + s v) = V(q) - F s,   F > 0        for all s > 0; v over columns, m and rad
 //
 // Tried out at distances that double as far as numbers reach: what begins to hold anywhere shows beyond that place, by
-// an energy that differs from F s. Rounding of v stretches what is stiff across the line, by no more than its own part
-// of s. Singular: none; a line that ends in a hollow narrower than its distance may pass for one that does not.
+// an energy that differs from F s. v is known as well as motions without stiffness are told (free_motions.hpp): so much
+// of v^T |K| v s^2 / 2 may be stretched across the line. Singular: none; a line that ends in a hollow narrower than its distance may pass for one that does not.
 #pragma once
 
 #include <span>
