@@ -335,7 +335,9 @@ TEST(AnalysesWithoutEnergy, RefuseWhatTheyDoNotTreatByNameAndNumber) {
   scene.replace(scene.find("\"type\": \"revolute\""), 18, R"("name": "A", "type": "revolute")");
   const TextRun run = run_text(scene);
   ASSERT_EQ(run.outcome.analyses.size(), 4u) << run.outcome.error_text;
-  for (std::size_t k = 0; k < 4; ++k) {
+  // Equilibrium and modes have the stop beside the follower force; buckling and path have not.
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_TRUE(run.analysis(k).report.ok()) << run.analysis(k).report.message;
+  for (std::size_t k = 2; k < 4; ++k) {
     EXPECT_EQ(run.analysis(k).report.status, Status::refused) << k;
     EXPECT_NE(run.analysis(k).report.message.find("buffer"), std::string::npos) << run.analysis(k).report.message;
   }
