@@ -15,7 +15,8 @@ namespace {
 // Parts of the energy exchanged so far: the error allowed in a stretch, above which it is repeated in shorter ones; and
 // the total error above which results carry a warning. Both include rounding of energies.
 constexpr double allowed_part = 1e-10, doubtful_error = 1e-6, work_rounding = thresholds::carried_rounding;
-// Where a law jumps, the shortest stretch is wrong by some half of what it exchanges: 1e-8 rad of the motion.
+// Where a law jumps, the shortest stretch is wrong by some half of what it exchanges: 1e-8 rad of the motion. Without
+// laws powers bend only towards dead points, where they have no bound: then the square root of this.
 constexpr double shortest_part = 1.0 / (1 << 24);
 
 constexpr std::array<double, 4> weights = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
@@ -98,7 +99,9 @@ double WorkSum::allowed_error(const Snapshot& end) const {
   return allowed_part * exchanged_ + work_rounding * energy_scale(end);
 }
 
-bool WorkSum::can_be_shorter() const { return part_ > shortest_part; }
+bool WorkSum::can_be_shorter() const {
+  return part_ > (evaluator_->model().laws.empty() ? std::sqrt(shortest_part) : shortest_part);
+}
 
 void WorkSum::take_back() {
   work_ = work_before_;

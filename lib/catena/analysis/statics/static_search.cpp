@@ -60,9 +60,11 @@ StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<doub
     const bool settles = pushed && system_.has_gaps() && options_.solver == StaticSolver::automatic;
     const StaticWay way = settles ? StaticWay::settling : attempts.present().way;
     outcome = trials.run(q, lambda, options_.warm && trial == 0, way, result);
-    if (outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled) break;
+    // Past the top of a floor that it slides off it falls for ever; on the top it is at rest.
+    const bool slid_off = outcome.end == StaticEnd::unbounded && options_.stationary && system_.has_gaps();
+    if ((outcome.end == StaticEnd::unbounded && !slid_off) || outcome.end == StaticEnd::cancelled) break;
     // Another place may hold it.
-    if (outcome.end == StaticEnd::turning) turning = explain_unbounded(system_, start);
+    if (outcome.end == StaticEnd::turning || slid_off) turning = explain_unbounded(system_, start);
     if (outcome.converged()) {
       result.certificate = judge_.certify_point(q, lambda, result.gaps);
       const Certificate& c = result.certificate;

@@ -35,8 +35,9 @@ bool falls_for_ever(StaticSystem& system, std::span<const double> q, std::span<c
     there.assign(q.begin(), q.end());
     system.advance(there, direction, s, std::numeric_limits<double>::infinity());
     system.move_to(there);
-    endless = system.phi_norm() <= std::max(descent::restored, 10 * system.rounding_change()) &&
-              std::abs(energy - system.energy() - force * s) <= bend * force * s + across * s * s / 2;
+    endless =
+        system.phi_norm() <= std::max({descent::restored, 10 * system.rounding_change(), neutral_part * way * way}) &&
+        std::abs(energy - system.energy() - force * s) <= bend * force * s + across * s * s / 2;
   }
   system.evaluator().go_to_curve_places(places);
   system.move_to(q);

@@ -4,8 +4,8 @@
 //
 // Tried out at distances that double as far as numbers reach: what begins to hold anywhere shows beyond that place, by
 // an energy that differs from F s. v is known as well as motions without stiffness are told (free_motions.hpp): so much
-// of v^T |K| v s^2 / 2 may be stretched across the line. Singular: none; a line that ends in a hollow narrower than its
-// distance may pass for one that does not.
+// of v^T |K| v s^2 / 2 may be stretched across the line, and so much of s^2, in extents, may rows miss. Singular: none;
+// a line that ends in a hollow narrower than its distance, and a guide bent by less, may pass for what has no end.
 #pragma once
 
 #include <span>
