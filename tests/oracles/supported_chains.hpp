@@ -161,7 +161,9 @@ class ChainStatics {
     }
     Eigen::MatrixXd constraints(static_cast<Eigen::Index>(rows.size()), n);
     for (std::size_t r = 0; r < rows.size(); ++r) constraints.row(static_cast<Eigen::Index>(r)) = rows[r] / l;
-    const Eigen::MatrixXd basis = DenseRows<double>(constraints, 1e-14 * n).null_space();
+    const double rounding =
+        std::numeric_limits<double>::epsilon() * static_cast<double>(std::min<Eigen::Index>(constraints.rows(), n));
+    const Eigen::MatrixXd basis = DenseRows<double>(constraints, rounding).null_space();
     if (basis.cols() == 0) return 1;
     return symmetric_eigenvalues<double>(basis.transpose() * hessian * basis)[0] / hessian.cwiseAbs().maxCoeff();
   }

@@ -11,12 +11,6 @@ struct ReferenceFactors<T>::Lu {
 
 template <class T>
 ReferenceFactors<T>::ReferenceFactors(const DenseMatrix<T>& a) : lu_(new Lu{Eigen::FullPivLU<DenseMatrix<T>>(a)}) {}
-template <class T>
-ReferenceFactors<T>::~ReferenceFactors() = default;
-template <class T>
-ReferenceFactors<T>::ReferenceFactors(ReferenceFactors&&) noexcept = default;
-template <class T>
-ReferenceFactors<T>& ReferenceFactors<T>::operator=(ReferenceFactors&&) noexcept = default;
 
 template <class T>
 DenseVector<T> ReferenceFactors<T>::solve(const DenseVector<T>& b) const {
@@ -54,16 +48,12 @@ struct DenseRows<T>::Qr {
 };
 
 template <class T>
-DenseRows<T>::DenseRows(const DenseMatrix<T>& rows, T threshold) : qr_(new Qr) {
-  qr_->factors.setThreshold(threshold);
-  qr_->factors.compute(rows.transpose());
+DenseRows<T>::DenseRows(const DenseMatrix<T>& rows, T threshold) {
+  const auto qr = std::make_shared<Qr>();
+  qr->factors.setThreshold(threshold);
+  qr->factors.compute(rows.transpose());
+  qr_ = qr;
 }
-template <class T>
-DenseRows<T>::~DenseRows() = default;
-template <class T>
-DenseRows<T>::DenseRows(DenseRows&&) noexcept = default;
-template <class T>
-DenseRows<T>& DenseRows<T>::operator=(DenseRows&&) noexcept = default;
 
 template <class T>
 Eigen::Index DenseRows<T>::rank() const {
@@ -99,16 +89,12 @@ struct LeastSquares<T>::Orthogonal {
 };
 
 template <class T>
-LeastSquares<T>::LeastSquares(const DenseMatrix<T>& a, T threshold) : orthogonal_(new Orthogonal) {
-  if (threshold > 0) orthogonal_->factors.setThreshold(threshold);
-  orthogonal_->factors.compute(a);
+LeastSquares<T>::LeastSquares(const DenseMatrix<T>& a, T threshold) {
+  const auto orthogonal = std::make_shared<Orthogonal>();
+  if (threshold > 0) orthogonal->factors.setThreshold(threshold);
+  orthogonal->factors.compute(a);
+  orthogonal_ = orthogonal;
 }
-template <class T>
-LeastSquares<T>::~LeastSquares() = default;
-template <class T>
-LeastSquares<T>::LeastSquares(LeastSquares&&) noexcept = default;
-template <class T>
-LeastSquares<T>& LeastSquares<T>::operator=(LeastSquares&&) noexcept = default;
 
 template <class T>
 DenseVector<T> LeastSquares<T>::solve(const DenseVector<T>& b) const {

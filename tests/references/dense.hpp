@@ -22,9 +22,6 @@ template <class T>
 class ReferenceFactors {
  public:
   explicit ReferenceFactors(const DenseMatrix<T>& a);
-  ~ReferenceFactors();
-  ReferenceFactors(ReferenceFactors&&) noexcept;
-  ReferenceFactors& operator=(ReferenceFactors&&) noexcept;
 
   DenseVector<T> solve(const DenseVector<T>& b) const;
   DenseMatrix<T> solve_all(const DenseMatrix<T>& b) const;
@@ -37,7 +34,7 @@ class ReferenceFactors {
 
  private:
   struct Lu;
-  std::unique_ptr<Lu> lu_;
+  std::shared_ptr<const Lu> lu_;
 };
 
 /// The rows of a matrix as they depend on each other, by a QR factorization of its transpose with pivots: a row counts
@@ -46,9 +43,6 @@ template <class T>
 class DenseRows {
  public:
   DenseRows(const DenseMatrix<T>& rows, T threshold);
-  ~DenseRows();
-  DenseRows(DenseRows&&) noexcept;
-  DenseRows& operator=(DenseRows&&) noexcept;
 
   Eigen::Index rank() const;
   /// The pivot of the last row that counts; 1 where none does.
@@ -62,7 +56,7 @@ class DenseRows {
 
  private:
   struct Qr;
-  std::unique_ptr<Qr> qr_;
+  std::shared_ptr<const Qr> qr_;
 };
 
 /// Of all x with the least |A x - b|, the shortest; singular values below `threshold` of the largest count as zero.
@@ -70,14 +64,11 @@ template <class T>
 class LeastSquares {
  public:
   explicit LeastSquares(const DenseMatrix<T>& a, T threshold = 0);
-  ~LeastSquares();
-  LeastSquares(LeastSquares&&) noexcept;
-  LeastSquares& operator=(LeastSquares&&) noexcept;
   DenseVector<T> solve(const DenseVector<T>& b) const;
 
  private:
   struct Orthogonal;
-  std::unique_ptr<Orthogonal> orthogonal_;
+  std::shared_ptr<const Orthogonal> orthogonal_;
 };
 
 template <class T>

@@ -55,10 +55,13 @@ void MeasureSet::resolve(const Model& model, const Plan& plan, const ColumnSourc
   columns_ = std::make_unique<ColumnSet>(ColumnSet::resolve(model, plan, names, untimed));
   if (!columns_->notes().empty()) throw std::invalid_argument("measures: " + columns_->notes().front());
   if (columns_->size() != names.size()) throw std::invalid_argument("measures: a name stands for more than one column");
+  const bool loads_switch = !switches_of_loads(model, {}, true).empty();
   for (std::size_t c = 0; c < columns_->size(); ++c) {
     std::vector<std::string> by = switches_of(model, names[c]);
-    const bool multipliers = ColumnSet::resolve(model, plan, std::span(&names[c], 1), untimed).needs().multipliers;
-    for (std::string& load : switches_of_loads(model, names[c], multipliers)) by.push_back(std::move(load));
+    if (loads_switch) {
+      const bool multipliers = ColumnSet::resolve(model, plan, std::span(&names[c], 1), untimed).needs().multipliers;
+      for (std::string& load : switches_of_loads(model, names[c], multipliers)) by.push_back(std::move(load));
+    }
     for (const std::string& name : by) {
       const auto known = std::find(names.begin(), names.end(), name);
       switches_.push_back({c, static_cast<std::size_t>(known - names.begin())});

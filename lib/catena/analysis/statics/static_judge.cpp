@@ -39,13 +39,7 @@ void take_out_all(StaticSystem& system, std::vector<std::vector<double>> shapes,
 
 Certificate StaticJudge::certify_point(const std::vector<double>& q, std::span<const double> lambda,
                                        const ActiveSet& gaps) {
-  if (!system_.has_gaps()) return certify(system_, lambda);
-  system_.close_gaps(strong_of(gaps));
-  system_.move_to(q);
-  const Certificate certificate = certify(system_, lambda);
-  system_.close_gaps(gaps.closed);
-  system_.move_to(q);
-  return certificate;
+  return with_weak_open(system_, q, gaps, [&] { return certify(system_, lambda); });
 }
 
 const StaticAccuracy& StaticJudge::weigh(std::span<const double> lambda) {

@@ -54,7 +54,7 @@ StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<doub
   StaticOutcome outcome;
   double push = first_push;
   bool accepted = false, pushed = false;
-  std::optional<Report> turning;
+  std::optional<Report> endless;
   for (int trial = 0; trial < most_static_trials; ++trial) {
     // Newton's steps with gaps may lead back to the point that was left; a damped motion does not.
     const bool settles = pushed && system_.has_gaps() && options_.solver == StaticSolver::automatic;
@@ -64,7 +64,7 @@ StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<doub
     const bool slid_off = outcome.end == StaticEnd::unbounded && options_.stationary && system_.has_gaps();
     if ((outcome.end == StaticEnd::unbounded && !slid_off) || outcome.end == StaticEnd::cancelled) break;
     // Another place may hold it.
-    if (outcome.end == StaticEnd::turning || slid_off) turning = explain_unbounded(system_, start);
+    if (outcome.end == StaticEnd::turning || slid_off) endless = explain_unbounded(system_, start);
     if (outcome.converged()) {
       result.certificate = judge_.certify_point(q, lambda, result.gaps);
       const Certificate& c = result.certificate;
@@ -86,7 +86,7 @@ StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<doub
   result.residual = judge_.accuracy().residual;
   if (!accepted) {
     const bool stopped = outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled;
-    result.report = turning && !stopped ? *turning : explain(outcome, start, result);
+    result.report = endless && !stopped ? *endless : explain(outcome, start, result);
     return result;
   }
   drop_whole_turns(system_, start, q);

@@ -33,7 +33,6 @@ class StaticSearch {
   StaticOutcome settle(std::vector<double>& q, std::vector<double>& lambda, int most_steps, StaticResult& result);
   /// Looks beside an equilibrium that diverges for a stable one; false, and nothing changed, where there is none.
   bool leave_divergence(std::vector<double>& q, std::vector<double>& lambda, StaticResult& result);
-  StaticStability stability_at(const std::vector<double>& q, std::span<const double> lambda, const ActiveSet& gaps);
   void describe_stability(std::span<const double> lambda, StaticResult& result);
   void leave(const Certificate& certificate, std::vector<double>& q, double size);
   Report explain(const StaticOutcome& outcome, const std::vector<double>& start, const StaticResult& result);

@@ -32,18 +32,6 @@ StaticOutcome StaticSearch::settle(std::vector<double>& q, std::vector<double>& 
   return outcome;
 }
 
-// Gaps that are closed without force may open: stability is judged as if they were.
-StaticStability StaticSearch::stability_at(const std::vector<double>& q, std::span<const double> lambda,
-                                           const ActiveSet& gaps) {
-  if (!system_.has_gaps()) return judge_stability(system_, lambda);
-  system_.close_gaps(strong_of(gaps));
-  system_.move_to(q);
-  StaticStability stability = judge_stability(system_, lambda);
-  system_.close_gaps(gaps.closed);
-  system_.move_to(q);
-  return stability;
-}
-
 StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vector<double>& lambda) {
   StaticResult result;
   result.has_energy = false;
@@ -62,7 +50,7 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
     result.report = explain(outcome, start, result);
     return result;
   }
-  result.stability = stability_at(q, lambda, result.gaps);
+  result.stability = with_weak_open(system_, q, result.gaps, [&] { return judge_stability(system_, lambda); });
   const StaticStability& s = *result.stability;
   const bool left = !options_.stationary && s.judged && s.motions.negative > 0 && leave_divergence(q, lambda, result);
   warn_of_rounding(judge_.accuracy(), result.report);
@@ -92,7 +80,8 @@ bool StaticSearch::leave_divergence(std::vector<double>& q, std::vector<double>&
       const StaticOutcome outcome = settle(q, lambda, usual_steps_aside, result);
       if (outcome.end == StaticEnd::cancelled) break;
       if (!outcome.converged()) continue;
-      StaticStability beside = stability_at(q, lambda, result.gaps);
+      StaticStability beside =
+          with_weak_open(system_, q, result.gaps, [&] { return judge_stability(system_, lambda); });
       if (!beside.stable) continue;
       result.stability = std::move(beside);
       result.residual = outcome.residual;

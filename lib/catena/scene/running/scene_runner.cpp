@@ -8,6 +8,7 @@
 #include "catena/analysis/run/name_list.hpp"
 #include "catena/scene/models/scene_saving.hpp"
 #include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/event_entries.hpp"
 #include "catena/scene/running/scene_setup.hpp"
 
 namespace catena {
@@ -125,14 +126,14 @@ SceneSetup::NamedValues SceneRun::changed_parameters(const AnalysisTask& task) {
 
 /// What does not hold from the start, since an analysis before has left it so, and no event of this one engages.
 void tell_of_released(const Model& model, const std::vector<int>& released, const AnalysisTask& task, Report& report) {
-  constexpr int engage = 3;  // among the words of the key
+  if (released.empty()) return;
+  const std::vector<Event> events = events_of(task, model);
   NameList names;
   for (const int element : released) {
-    const std::string name = model.element_name(element);
-    const bool engaged = std::any_of(task.events.begin(), task.events.end(), [&](const EventRequest& event) {
-      return event.action == engage && event.element == name;
+    const bool engaged = std::any_of(events.begin(), events.end(), [&](const Event& event) {
+      return event.action == EventAction::engage && event.element == element;
     });
-    if (!engaged) names.add(name);
+    if (!engaged) names.add(model.element_name(element));
   }
   if (names.count() == 0) return;
   report.warnings.push_back(

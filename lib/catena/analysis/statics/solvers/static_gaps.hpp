@@ -33,6 +33,18 @@ struct ActiveSet {
 /// Those that are closed and not weak.
 std::vector<char> strong_of(const ActiveSet& set);
 
+/// What `judge` says of the configuration q with the weak gaps open, as they may be: they are closed again behind it.
+template <class Judge>
+auto with_weak_open(StaticSystem& system, std::span<const double> q, const ActiveSet& set, Judge&& judge) {
+  if (!system.has_gaps()) return judge();
+  system.close_gaps(strong_of(set));
+  system.move_to(q);
+  auto found = judge();
+  system.close_gaps(set.closed);
+  system.move_to(q);
+  return found;
+}
+
 struct StaticGapOptions {
   int max_iterations = 200;  ///< of the smoothed equations
   int first_steps = 80;      ///< of them, until the first smoothing has arrived
