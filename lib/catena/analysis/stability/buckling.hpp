@@ -95,8 +95,7 @@ class Buckling {
   /// The `count` nearest loads by Lanczos' method, or by dense algebra.
   Report find_by_lanczos(std::vector<Load>& loads, const std::function<bool()>& go_on);
   Report find_first_loads(bool within, std::vector<Load>& loads, double& step, const std::function<bool()>& go_on);
-  Report find_beside(double distance, double step, int count, std::vector<Load>& loads,
-                     const std::function<bool()>& go_on);
+  Report find_one(double step, int order, std::optional<Load>& load, const std::function<bool()>& go_on);
   Report find_by_inertia(double step, std::vector<Load>& loads, const std::function<bool()>& go_on);
   Report find_by_dense(std::vector<Load>& loads, const std::function<bool()>& go_on);
   /// K at a value of the parameter to `matrix`, with the multipliers that belong to it.
@@ -110,8 +109,8 @@ class Buckling {
   Report find_without_energy(BucklingReport& report, const std::function<bool()>& go_on);
   void find_errors(BucklingReport& report);
   Report not_stable() const;
-  /// Loads by the difference of K between p0 and p0 + step.
-  Report find_with(double step, int count, std::vector<Load>& loads, double& effect,
+  /// Loads by the difference of K between p0 and p0 + step: those of its `count` largest effects, in size or by value.
+  Report find_with(double step, int count, bool by_value, std::vector<Load>& loads, double& effect,
                    const std::function<bool()>& go_on);
 
   std::shared_ptr<const Model> model_;

@@ -63,19 +63,20 @@ class BucklingOperator final : public SpectralOperator {
   std::vector<double> weight_, typical_, given_, solution_, correction_, product_;
 };
 
-// Positions of the `count` largest in size; none while there are fewer.
-std::vector<int> largest_ones(std::span<const double> theta, int count) {
+// Positions of the `count` largest in size, or by value; none while there are fewer.
+std::vector<int> largest_ones(std::span<const double> theta, int count, bool by_value) {
   if (static_cast<int>(theta.size()) < count) return {};
   std::vector<int> order(theta.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::abs(theta[at(a)]) > std::abs(theta[at(b)]); });
+  const auto rank = [&](int k) { return by_value ? theta[at(k)] : std::abs(theta[at(k)]); };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return rank(a) > rank(b); });
   order.resize(at(count));
   return order;
 }
 
 }  // namespace
 
-Report Buckling::find_with(double step, int count, std::vector<Load>& loads, double& effect,
+Report Buckling::find_with(double step, int count, bool by_value, std::vector<Load>& loads, double& effect,
                            const std::function<bool()>& go_on) {
   loads.clear();
   KktMatrix other(plan_, system_.radius());
@@ -85,7 +86,7 @@ Report Buckling::find_with(double step, int count, std::vector<Load>& loads, dou
   if (const auto stability = path_.stability(); !stability || stability->negative > 0) return not_stable();
   BucklingOperator op(system_, other);
   Lanczos lanczos(op);
-  const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count); };
+  const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count, by_value); };
   const int most = std::min(plan_->columns, Lanczos::most_vectors(count));
   const bool settled = lanczos.run(wanted, most, go_on);
   if (go_on && !go_on()) return {Status::cancelled, "stopped while loads were looked for", {}};
@@ -96,7 +97,7 @@ Report Buckling::find_with(double step, int count, std::vector<Load>& loads, dou
   }
   effect = 0;
   const int found = std::min(count, static_cast<int>(lanczos.theta().size()));
-  for (int k : largest_ones(lanczos.theta(), found)) {
+  for (int k : largest_ones(lanczos.theta(), found, by_value)) {
     const double theta = lanczos.theta()[at(k)];
     std::vector<double> shape = lanczos.vector(k);
     // The metric is K0: v^T (K0 - K1) v is theta itself.
@@ -115,9 +116,9 @@ Report Buckling::find_first_loads(bool within, std::vector<Load>& loads, double&
   double side = 1, effect = 0;
   for (int k = 0; k < thresholds::most_bisections && std::isfinite(first.step()); ++k) {
     step = first.step();
-    Report pass = find_with(side * step, options_.count, loads, effect, go_on);
+    Report pass = find_with(side * step, options_.count, false, loads, effect, go_on);
     if (outside_ && side > 0) {
-      pass = find_with(-step, options_.count, loads, effect, go_on);
+      pass = find_with(-step, options_.count, false, loads, effect, go_on);
       if (!outside_) side = -1;
     }
     if (outside_) {
@@ -137,7 +138,7 @@ Report Buckling::find_by_lanczos(std::vector<Load>& loads, const std::function<b
   if (loads.empty()) return {};
   // With the load itself as the step rounding is least.
   std::vector<Load> again;
-  Report pass = find_with(loads.front().distance, static_cast<int>(loads.size()), again, effect, go_on);
+  Report pass = find_with(loads.front().distance, static_cast<int>(loads.size()), false, again, effect, go_on);
   if (!pass.ok() && !outside_) return pass;
   bool linear = pass.ok() && again.size() == loads.size();
   for (std::size_t k = 0; linear && k < loads.size(); ++k)
@@ -161,16 +162,18 @@ class Buckling::InertiaSearch {
       for (Front& s : sides) {
         if (s.open) go_to(s, reach);
       }
-      return report_.ok() && distances_.size() < wanted && (sides[0].open || sides[1].open);
+      return report_.ok() && places_.size() < wanted && (sides[0].open || sides[1].open);
     });
-    std::sort(distances_.begin(), distances_.end(), [](const Place& a, const Place& b) { return comes_first(a, b); });
-    distances_.resize(std::min(distances_.size(), wanted));
+    std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return comes_first(a, b); });
+    places_.resize(std::min(places_.size(), wanted));
     return report_;
   }
+  /// A load near a distance: there theta number `order`, by falling value, passes 1.
   struct Place {
     double distance = 0;
+    int order = 0;
   };
-  const std::vector<Place>& places() const { return distances_; }
+  const std::vector<Place>& places() const { return places_; }
 
  private:
   // The last sample on one side.
@@ -213,7 +216,8 @@ class Buckling::InertiaSearch {
     const std::optional<int> now = end ? std::nullopt : negative(middle);
     if (!now) {
       // So it is where K is singular to rounding and has no factors.
-      for (int k = 0; k < std::abs(negative_b - negative_a); ++k) distances_.push_back({middle});
+      const auto [fewer, more] = std::minmax(negative_a, negative_b);
+      for (int order = fewer; order < more; ++order) places_.push_back({middle, order});
       return;
     }
     look_between(a, negative_a, middle, *now);
@@ -222,28 +226,18 @@ class Buckling::InertiaSearch {
 
   Buckling& buckling_;
   const std::function<bool()>& go_on_;
-  std::vector<Place> distances_;
+  std::vector<Place> places_;
   Report report_;
 };
 
-// The loads nearest to a distance by a step of that length or near it, in the order of their distances.
-Report Buckling::find_beside(double distance, double step, int count, std::vector<Load>& loads,
-                             const std::function<bool()>& go_on) {
-  const auto is_there = [&](const Load& load) {
-    return std::abs(load.distance - distance) <= thresholds::least_gain * std::abs(distance);
-  };
+// The load that belongs to theta number `order`, by falling value, of a step. As many as K(p0 + step) has negative
+// eigenvalues are above 1: so a load is told from its neighbours, however near these are.
+Report Buckling::find_one(double step, int order, std::optional<Load>& load, const std::function<bool()>& go_on) {
+  load.reset();
+  std::vector<Load> loads;
   double effect = 0;
-  // What the load makes stiffer may have larger values of theta.
-  for (int asked = count;; asked *= 2) {
-    if (Report pass = find_with(step, asked, loads, effect, go_on); !pass.ok()) return pass;
-    const auto there = std::count_if(loads.begin(), loads.end(), is_there);
-    if (there >= count || asked > plan_->columns) break;
-  }
-  std::sort(loads.begin(), loads.end(), [&](const Load& a, const Load& b) {
-    return std::abs(a.distance - distance) < std::abs(b.distance - distance);
-  });
-  loads.resize(std::min(loads.size(), at(count)));
-  std::sort(loads.begin(), loads.end(), [](const Load& a, const Load& b) { return a.distance < b.distance; });
+  if (Report pass = find_with(step, order + 1, true, loads, effect, go_on); !pass.ok()) return pass;
+  if (order < static_cast<int>(loads.size())) load = std::move(loads[at(order)]);
   return {};
 }
 
@@ -251,25 +245,19 @@ Report Buckling::find_by_inertia(double step, std::vector<Load>& loads, const st
   loads.clear();
   InertiaSearch search(*this, go_on);
   if (Report found = search.find(step, at(options_.count)); !found.ok()) return found;
-  const std::vector<InertiaSearch::Place>& places = search.places();
-  for (std::size_t k = 0, end = 0; k < places.size(); k = end) {
-    // Those of one bracket together.
-    const double distance = places[k].distance;
-    while (end < places.size() && places[end].distance == distance) ++end;
-    std::vector<Load> here;
-    for (std::size_t own = 0; own < end - k; ++own) {
-      double now = distance, before = 0, gap_before = 0;
-      for (int round = 0; round < thresholds::most_bisections; ++round) {
-        if (Report pass = find_beside(distance, now, static_cast<int>(end - k), here, go_on); !pass.ok()) return pass;
-        if (own >= here.size()) break;
-        const double gap = here[own].distance - now;
-        const double next = round == 0 ? here[own].distance : now - gap * (now - before) / (gap - gap_before);
-        before = std::exchange(now, next);
-        gap_before = gap;
-        if (!(std::abs(now - before) > refined_load * std::abs(now))) break;
-      }
-      if (own < here.size()) loads.push_back({before, std::move(here[own].shape)});
+  for (const InertiaSearch::Place& place : search.places()) {
+    std::optional<Load> load;
+    double now = place.distance, before = 0, gap_before = 0;
+    for (int round = 0; round < thresholds::most_bisections; ++round) {
+      if (Report pass = find_one(now, place.order, load, go_on); !pass.ok()) return pass;
+      if (!load) break;
+      const double gap = load->distance - now;
+      const double next = round == 0 ? load->distance : now - gap * (now - before) / (gap - gap_before);
+      before = std::exchange(now, next);
+      gap_before = gap;
+      if (!(std::abs(now - before) > refined_load * std::abs(now))) break;
     }
+    if (load) loads.push_back({before, std::move(load->shape)});
   }
   std::sort(loads.begin(), loads.end(), comes_first<Load>);
   return {};

@@ -2,10 +2,9 @@
 
 #include <atomic>
 
-#if defined(__x86_64__)
+// 0 where a build has the kernels for any processor alone.
+#ifndef CATENA_LANES_DISPATCH
 #define CATENA_LANES_DISPATCH 1
-#else
-#define CATENA_LANES_DISPATCH 0
 #endif
 
 namespace catena {
