@@ -9,7 +9,7 @@
 //   det [ A  b ; t^T ] = det A (t_p + ...),     A: matrix of equilibrium, b: derivative by the parameter, t: tangent
 //
 // stays: t_p changes its sign if the number of negative modes changes by an odd one. Source: E. Allgower, K. Georg,
-// Introduction to Numerical Continuation Methods, 2003, chapter 12. Singular: several corners within 1e-9 of each
+// Introduction to Numerical Continuation Methods, 2003, chapter 12. Singular: several corners within 1e-6 of each
 // other count as one; a corner that another path crosses is passed along one of them.
 #include <fmt/format.h>
 
@@ -42,6 +42,8 @@ bool Path::March::find_corner(double s, Side& behind) {
     if (2 * std::max(first, second) < turn) return false;
     (first > second ? behind : before) = middle;
   }
+  // Where differences by the parameter do not reach back over the corner.
+  if (!solve_at(before.s + beside_point, behind)) return false;
   PathPoint travel{std::vector<double>(at(path_.plan_->columns)), {}, behind.point.p - before.point.p};
   for (int c = 0; c < path_.plan_->columns; ++c) {
     const std::size_t k = at(path_.plan_->coordinate[at(c)]);

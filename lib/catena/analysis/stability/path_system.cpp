@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/statics/solvers/static_settling.hpp"
 #include "catena/assembly/length_scale.hpp"
@@ -19,10 +20,6 @@ constexpr double solved = 1e-13, place_solved = 1e-12;
 constexpr double nearly_solved = 1e-9;
 // Steps larger than this have left the path: parts of the mechanism's extent, or rad.
 constexpr double astray = 3;
-// Of a step of central differences, in parts of the parameter: near the third root of epsilon, 6e-6, rounding and the
-// third derivative make errors of one size.
-constexpr double difference = 1e-5;
-
 // A system without a length of its own takes one where it is placed first.
 StaticSystem& with_length(StaticSystem& system) {
   if (lacks_length(system.evaluator())) system.move_to(system.evaluator().given_configuration());
@@ -59,7 +56,7 @@ PathSystem::PathSystem(StaticSystem& system, ModelAt model_at, double p, double 
     tangent_.emplace(system_);
     spectrum_tangent_.emplace(system_);
   }
-  for (auto* vector : {&correction_, &newton_, &along_, &derivative_, &side_}) vector->resize(given_.size());
+  for (auto* vector : {&correction_, &newton_, &along_, &derivative_, &side_, &here_}) vector->resize(given_.size());
 }
 
 bool PathSystem::set_parameter(double p) {
@@ -127,22 +124,6 @@ void PathSystem::residual(const PathPoint& x, std::vector<double>& out) {
   std::copy(system_.phi().begin(), system_.phi().end(), all.begin() + plan_.columns);
 }
 
-void PathSystem::parameter_derivative(const PathPoint& x, std::vector<double>& derivative) {
-  derivative.resize(given_.size());
-  PathPoint beside = x;
-  const double h = difference * std::max(scale_, std::abs(x.p));
-  // One-sided where the scene ends.
-  beside.p = x.p + h;
-  if (!move_to(beside)) move_to(beside = x);
-  residual(beside, derivative);
-  const double above = beside.p;
-  beside.p = x.p - h;
-  if (!move_to(beside)) move_to(beside = x);
-  residual(beside, side_);
-  for (std::size_t k = 0; k < derivative.size(); ++k) derivative[k] = (derivative[k] - side_[k]) / (above - beside.p);
-  move_to(x);
-}
-
 void PathSystem::solve(std::span<const double> given, std::span<double> x) {
   if (is_circulatory())
     tangent_->solve_to_rounding(given, x);
@@ -192,6 +173,7 @@ double PathSystem::way(const PathPoint& from, const PathPoint& x, const PathPoin
 
 int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t, double s) {
   double before = 0;
+  bool closely = false;
   for (int k = 0; k <= most_iterations; ++k) {
     if (!move_to(x)) {
       refused_value_ = x.p;
@@ -208,10 +190,12 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     const double noise = exact + (scale > 0 ? rounding / scale : 0);
     if (error <= exact || (k > 0 && error <= nearly_solved && error >= 0.5 * before)) return k;
     if (!std::isfinite(error)) return -1;
+    // Where steps do not halve the error a load may have a kink beside x.
+    closely = closely || (k > 0 && error > thresholds::least_gain * before);
     before = error;
     if (k == most_iterations) break;
     double dp = 0;
-    if (!find_newton_step(x, t, place, dp)) return -1;
+    if (!find_newton_step(x, t, place, closely, dp)) return -1;
     // A residual that may be rounding of the stiffest spring counts as such only if a step would move nothing. That
     // step is made: a short spring is as stiff as its length is short, and rounding of its force is less than its
     // stiffness allows.
@@ -235,10 +219,10 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
 
 // Of the residual, given_, that x leaves, and of its place on the path: newton_, and dp of the parameter. False where
 // there is no matrix to solve with, or the step has left the path. The system stays at x.
-bool PathSystem::find_newton_step(const PathPoint& x, const PathPoint& t, double place, double& dp) {
+bool PathSystem::find_newton_step(const PathPoint& x, const PathPoint& t, double place, bool closely, double& dp) {
   // The difference is one-sided: it affects the convergence only.
   PathPoint beside = x;
-  beside.p += difference * std::max(scale_, std::abs(x.p));
+  beside.p += parameter_step(x, closely);
   if (move_to(beside)) {
     residual(beside, derivative_);
     for (std::size_t i = 0; i < derivative_.size(); ++i)

@@ -105,7 +105,10 @@ class PathSystem {
   bool factorize_here(std::span<const double> lambda, double shift);
   double largest_stiffness() const;
   void residual(const PathPoint& x, std::vector<double>& out);
-  bool find_newton_step(const PathPoint& x, const PathPoint& t, double place, double& dp);
+  /// Of differences by the parameter at x; `closely`: the shortest.
+  double parameter_step(const PathPoint& x, bool closely) const;
+  double difference_over(const PathPoint& x, double h, std::vector<double>& derivative);
+  bool find_newton_step(const PathPoint& x, const PathPoint& t, double place, bool closely, double& dp);
   void make_newton_step(PathPoint& x, double dp) const;
 
   StaticSystem& system_;
@@ -121,7 +124,7 @@ class PathSystem {
   std::string lack_of_masses_;
   PathPoint factored_;  // where there are forces without a potential
   std::vector<Vec2<double>> first_origin_;
-  std::vector<double> weight_, placed_, correction_, given_, newton_, along_, derivative_, side_;
+  std::vector<double> weight_, placed_, correction_, given_, newton_, along_, derivative_, side_, here_;
 };
 
 }  // namespace catena

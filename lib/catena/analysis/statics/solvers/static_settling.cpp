@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "catena/analysis/balance/static_tangent.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/statics/solvers/static_active_set.hpp"
 #include "catena/analysis/statics/solvers/static_settling_gaps.hpp"
 #include "catena/base/at.hpp"
@@ -44,6 +45,7 @@ class Settling {
   bool stiffen();
   double move();
   bool is_balanced();
+  void polish();
   bool step();
 
   StaticSystem& system_;
@@ -133,6 +135,26 @@ bool Settling::is_balanced() {
          (!gaps_ || gaps_->hold_all(lambda_));
 }
 
+// From a place that is balanced: further, while steps halve the residual. The last step but one may just pass by this
+// solver's measure of the forces, and not by that of the judge.
+void Settling::polish() {
+  while (outcome_.step > last_change) {
+    before_.keep(system_, q_, lambda_);
+    const ActiveSet set = set_;
+    const double residual = outcome_.residual;
+    const double then = (gaps_ ? solve_with_gaps() : solve()) ? move() : size_;
+    if (then <= thresholds::least_gain * size_ && is_balanced()) {
+      size_ = then;
+      continue;
+    }
+    set_ = set;
+    if (gaps_) system_.close_gaps(set_.closed);
+    before_.take_back(system_, q_, lambda_);
+    outcome_.residual = residual;
+    return;
+  }
+}
+
 // False: the search ends.
 bool Settling::step() {
   before_.keep(system_, q_, lambda_);
@@ -155,6 +177,7 @@ bool Settling::step() {
   }
   if (!is_balanced()) return true;
   outcome_.end = StaticEnd::stationary;
+  polish();
   if (gaps_) mark_weak(system_, lambda_, set_);
   return false;
 }
