@@ -13,8 +13,6 @@ namespace {
 constexpr double reach = 1;
 // ... and beyond this many the method is not stable.
 constexpr double farthest = 1.9;
-// How far places are moved to see what that does, length scales or rad: rounding then takes ten digits off.
-constexpr double shift = 1e-6;
 // Part of the stiffness that is remembered from one evaluation to the next: an error turns away from stiff directions
 // while steps are short, and into them as soon as they are long.
 constexpr double remembered = 0.9;
@@ -131,7 +129,7 @@ void CarriedError::carry(const Integrator& integrator) {
   if (drowned_ && sharpest_ > stiff * rate_) lost_ = true;
   if (drowned_) std::fill(error_.begin(), error_.end(), all_wrong);
   if (lost_ || drowned_ || !(size > 0)) return;
-  const double s = shift / size;
+  const double s = Disturbance::shift / size;
   std::vector<double> beside(y_);
   for (std::size_t c = 0; c < moving_; ++c) {
     beside[c] += s * dq[c];

@@ -24,6 +24,9 @@ class Disturbance {
   /// A place that a disturbance moves further, in length scales, rad or the measure of path_system.hpp, or rates by
   /// this part of the largest, is not judged by it: K changes along the way, and what is of second order shows.
   static constexpr double largest_way = 1e-5;
+  /// How far places are moved along an error to see what that does, length scales or rad, and how far drivers go in a
+  /// change of time: rounding then takes ten digits off.
+  static constexpr double shift = 1e-6;
   /// Of the rounding of a balance, which is a bound: with all of it claims were optimistic by 1 at most, and half of
   /// them pessimistic by 92 and more, over 275 random mechanisms.
   static constexpr double usual_rounding = 0.5;

@@ -7,14 +7,12 @@
 #include <optional>
 
 #include "catena/analysis/accuracy/disturbance.hpp"
+#include "catena/analysis/stability/load_search.hpp"
 
 namespace catena {
 namespace {
 
 constexpr double no_place = std::numeric_limits<double>::quiet_NaN();
-// Of a path, whose range of the parameter is 1 long: D is far above its rounding there, and four places leave out what
-// changes with the fourth power of it.
-constexpr double aside = 1e-4;
 // Three distances, in parts of it, that have no places in common.
 constexpr std::array<double, 3> distances = {1, 1.3, 1.7};
 
@@ -68,7 +66,8 @@ double flutter_place_error(PathSystem& path, const PathPoint& row, const PathPoi
     std::array<double, 4> squares{}, places{};
     for (std::size_t i = 0; i < places.size(); ++i) {
       constexpr std::array<double, 4> sides = {-2, -1, 1, 2};
-      const double s = aside * distances[k] * sides[i];
+      // Four places leave out what changes with the fourth power of it.
+      const double s = load_difference * distances[k] * sides[i];
       PathPoint x = path.advanced(row, tangent, s);
       if (path.correct(x, row, tangent, s) < 0 || !path.spectrum(x, found)) return no_place;
       const auto near = least_meeting(found, off);

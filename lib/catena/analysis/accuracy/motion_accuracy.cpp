@@ -14,10 +14,8 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_claimed = 1.5;  // digits: larger errors have no effect in proportion any more
 constexpr double cost_of_row = 3;      // evaluations of accelerations and factors
-constexpr double grown = 1.25;         // an error since the last row that was looked at, for another one
+constexpr double grown = 1.25;         // an error, or the count of rows, since the last row that was looked at or kept
 constexpr double astray = 0.2;         // part of an error in every direction
-constexpr double moved = 1e-6;         // of places by a disturbance, length scales or rad; of time, radians of the rate
-constexpr double further = 1.25;       // rows until another one is kept, of those so far
 // 12492 columns of 492 random mechanisms (seeds 1 to 500 of stress/digits_test.cpp) were optimistic by 7.3 at most,
 // pessimistic by 81 at the median; those of two runs by 5.7 and 81.
 constexpr double factor = 2.3;
@@ -75,7 +73,7 @@ void MotionAccuracy::keep() {
   if (!timed_ || ++kept_.count < kept_.next) return;
   kept_.rows[at(kept_.oldest)] = row_;
   kept_.oldest = (kept_.oldest + 1) % late_rows;
-  kept_.next = static_cast<std::int64_t>(further * static_cast<double>(kept_.count)) + 1;
+  kept_.next = static_cast<std::int64_t>(grown * static_cast<double>(kept_.count)) + 1;
 }
 
 // Where accelerations have a peak, a small error of places makes a large one of theirs.
@@ -257,8 +255,8 @@ void MotionAccuracy::examine(const Row& row) {
   const double size = carried_.norm(row.error);
   disturb(row, size);
   const double radians = disturb_time(row);
-  double s = moved / std::max(size, Disturbance::epsilon);
-  if (radians > 0) s = std::min(s, std::max(1.0, moved / radians));
+  double s = Disturbance::shift / std::max(size, Disturbance::epsilon);
+  if (radians > 0) s = std::min(s, std::max(1.0, Disturbance::shift / radians));
   largest_.assign(columns_.size(), 0.0);
   for (const double sign : {1.0, -1.0}) {
     q_ = row.q;

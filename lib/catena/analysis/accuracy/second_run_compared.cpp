@@ -14,13 +14,14 @@ namespace catena {
 namespace {
 
 constexpr double unknown_error = std::numeric_limits<double>::quiet_NaN();
+// The difference of two runs is the error of one less that of the other: so many times it is enough where the error of
+// the better run is up to half of the other's.
 constexpr double factor_of_difference = 2;
 // Of the largest difference of its unit a column that differs at all counts at least this part: by chance it may differ
 // little in all rows, across the direction of the error, or where two errors have the same value on their ways.
 constexpr double part_of_largest = 0.05;
 // Places are further off than equations: one of 10,116 columns of baumgarte was by 14 times.
 constexpr double leverage = 4;
-constexpr double factor_of_instants = 2;
 
 // Units of places, rates and accelerations.
 bool is_of_bodies(UnitKind unit) {
@@ -45,7 +46,7 @@ void SecondRun::find_jumps(const MotionChanges& first, const MotionChanges& seco
   for (std::size_t k = 0; k < first.all().size(); ++k) {
     const MotionChange& change = first.all()[k];
     if (change.t == motion_.first) continue;
-    const double reach = factor_of_instants * std::abs(change.t - second.all()[k].t) +
+    const double reach = factor_of_difference * std::abs(change.t - second.all()[k].t) +
                          thresholds::same_instant * std::abs(change.t - motion_.first);
     for (auto at = std::lower_bound(instants.begin(), instants.end(), std::pair{change.t - reach, std::size_t{0}});
          at != instants.end() && at->first <= change.t + reach; ++at) {

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "catena/analysis/adjoint/phased_measures.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -84,7 +85,7 @@ bool PhasedMeasures::bends(const Passage& passage) const {
     change = std::max(change, std::abs(after - before));
     size = std::max({size, std::abs(before), std::abs(after)});
   }
-  return change > no_jump_of_slopes * size;
+  return change > thresholds::no_jump * size;
 }
 
 // By what determines the instant.

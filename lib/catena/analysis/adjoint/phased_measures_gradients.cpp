@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "catena/analysis/adjoint/phased_measures.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -42,7 +43,7 @@ bool PhasedMeasures::add_start() {
     for (std::size_t p = 0; p < at(group.count); ++p) {
       const std::size_t number = g * at(parameters_at_once) + p;
       const double size = number < sizes_.size() && sizes_[number] != 0 ? std::abs(sizes_[number]) : 1;
-      const double none = rounding_of_derivatives * std::max(evaluator().length_scale(), 1.0) / size;
+      const double none = thresholds::solved * std::max(evaluator().length_scale(), 1.0) / size;
       const int row = equations_->row_not_met(group.rows, anchor, q, qd, p, none, always);
       if (row >= 0) {
         const int element = plan().row_element[at(row)];

@@ -8,6 +8,11 @@ namespace catena::descent {
 inline constexpr int most_steps = 200;
 /// Of one step, rad, unless the limit has doubled.
 inline constexpr double largest_turn = 0.7;
+/// Of one step of Newton's method, rad, as elements are not linear.
+inline constexpr double newton_turn = 1;
+/// Where a step of Newton's method with a positive K is shorter, length scales or rad, K is the same at its end: one
+/// more correction with the same factors reaches rounding.
+inline constexpr double last_step = 1e-4;
 /// Shifts of K: the first relative to rounding of the largest stiffness or to force / extent, the last relative to the
 /// largest stiffness. Between them a soft support of a stiff part must be distinguished from no support. A search
 /// begins with this part of the shift of the step before.
@@ -24,6 +29,9 @@ inline constexpr double polishing_change = 1e-6;
 /// correction, length scales or rad, is none.
 inline constexpr double restored = 1e-10, remaining_part = 0.7, longest_correction = 10;
 inline constexpr int most_corrections = 12;
+/// Steps of Newton's method that may remain where forces are known only to rounding of stiff springs, length scales or
+/// rad.
+inline constexpr double rounded_change = 1e-9;
 /// Modes softer than this part of the stiffest are tested for rounding by a certificate: far above any rounding.
 inline constexpr double suspicious_part = 1e-6;
 

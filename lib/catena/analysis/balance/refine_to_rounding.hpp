@@ -3,11 +3,12 @@
 //   x := F^-1 b, then x += F^-1 (b - A x) while corrections become shorter, in the metric diag(weight) of the places
 //
 // Only places are measured: multipliers follow from them, and those of rows that depend on each other may go on moving.
-// Ends too where the next correction, extrapolated from the last two, is rounding.
+// Ends too where the next correction, extrapolated from the last two, is rounding: half an epsilon of the solution.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "catena/analysis/run/thresholds.hpp"
@@ -19,8 +20,6 @@ namespace catena {
 template <class Solve, class Multiply>
 double refine_to_rounding(std::span<const double> weight, std::span<const double> given, std::span<double> x,
                           std::span<double> correction, Solve&& solve, Multiply&& multiply) {
-  // Corrections below this part of the solution are rounding.
-  constexpr double rounding = 1e-16;
   const auto size_of = [&](std::span<const double> v) {
     double sum = 0;
     for (std::size_t c = 0; c < weight.size(); ++c) sum += weight[c] * v[c] * v[c];
@@ -37,7 +36,7 @@ double refine_to_rounding(std::span<const double> weight, std::span<const double
     const double now = size_of(correction);
     if (!(now < thresholds::least_gain * before)) return now > 0 ? now / size_of(x) : now;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
-    if (now * (now / before) <= rounding * size_of(x)) return now / size_of(x);
+    if (now * (now / before) <= std::numeric_limits<double>::epsilon() / 2 * size_of(x)) return now / size_of(x);
     before = now;
   }
 }

@@ -19,10 +19,6 @@ constexpr double doubtful_pivot = 1e-9;
 // A lane's numbers are those of a single search to rounding, where positions meet the constraints to 1e-10: decisions
 // nearer to their limits, relative to what is compared, are left to that.
 constexpr double doubtful_decrease = 1e-7, doubtful_noise = 0.3, doubtful_clip = 1e-9;
-// A step so short on a K that is positive is the last one, length scales or rad: Newton's method goes on from there,
-// and where its next step shows that K does not change over such a distance (lane_equilibrium_end.cpp) a single search
-// comes to the same place.
-constexpr double near_rest = 1e-4;
 // The slope of a step against the terms of its curvature, a hundred times what a single search takes for neutral.
 constexpr double neutral_terms = 1e-8;
 // N, N/m: far from where products are no longer represented, which single searches look for.
@@ -124,9 +120,9 @@ LaneSet LaneEquilibrium::judge_steps(LaneSet& lanes, double tolerance) {
     const double shift = system_.shift[0][lane];
     at_lane(lane).slope = slope;
     if (!std::isfinite(step) || !std::isfinite(slope)) return leave(lanes, lane, "a step is not finite");
-    if (step <= (shift > 0 ? descent::polishing_change : near_rest)) {
+    if (step <= (shift > 0 ? descent::polishing_change : descent::last_step)) {
       last |= 1U << lane;
-      at_lane(lane).before = shift > 0 ? near_rest : step;
+      at_lane(lane).before = shift > 0 ? descent::last_step : step;
       return;
     }
     if (system_.told(rest_residual, lane) <= 10 * tolerance * system_.told(rest_force, lane))

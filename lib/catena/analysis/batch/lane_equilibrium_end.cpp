@@ -14,7 +14,7 @@ namespace {
 // one may have, which shows K to be the same to that part; what is no longer than rounding leaves where motions are
 // soft.
 constexpr int last_steps = 6;
-constexpr double next_part = 0.05, not_shorter = thresholds::least_gain, rounded_step = 1e-9;
+constexpr double next_part = 0.05, not_shorter = thresholds::least_gain;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ LaneSet LaneEquilibrium::settle(LaneSet& lanes) {
         return leave(lanes, lane, "it leaves the place at which it came to rest");
       for (int r = 0; r < system_.rows(); ++r) system_.lambda[r][lane] = system_.next_lambda[r][lane];
       go(1U << lane, true);
-      const bool is_rounded = step > not_shorter * before && step <= rounded_step;
+      const bool is_rounded = step > not_shorter * before && step <= descent::rounded_change;
       if (step <= system_.rounding(lane) || is_rounded) {
         going &= ~(1U << lane);
       } else if (!(step <= next_part * before)) {

@@ -14,19 +14,10 @@
 #include <limits>
 
 #include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Of the kinetic energy before an impact: rounding of work.
-constexpr double energy_rounding = 1e-12;
-// Halvings of restitution before it is left out: what is left then is far below any speed of rest.
-constexpr int most_halvings = 40;
-// Of the speed of the motion: rounding that is left of the rates of bodies at rest.
-constexpr double rest_part = 1e-15;
-
-}  // namespace
 
 double ContactSwitch::kinetic_energy(std::span<const double> qd) const {
   const std::vector<double>& mass = equations_.masses().mass;
@@ -111,7 +102,7 @@ void ContactSwitch::set_up(ContactProblem& problem, double restitution_part, std
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const ContactProblem::Place& place = problem.place[a];
     // Bodies that came to rest have rates that are rounding of those of the motion.
-    const double speed = part_of_speed(active_[a], rest_part / ContactProblem::rounding_of_sums);
+    const double speed = part_of_speed(active_[a], thresholds::few_roundings / ContactProblem::rounding_of_sums);
     if (place.has_normal) problem.b_terms[2 * a] = std::max(size_of_product(gap_[active_[a]], qd), speed);
     if (place.has_friction) problem.b_terms[2 * a + 1] = std::max(size_of_product(slide_[active_[a]], qd), speed);
   }
@@ -195,7 +186,8 @@ bool ContactSwitch::bounce_without_gain(double t, const std::vector<std::size_t>
     std::copy(before.begin(), before.end(), qd.begin());
     p_ = p_before;
   };
-  const auto gains = [&](double work) { return work > energy_rounding * energy; };
+  // Beyond rounding of velocities that follow from linear equations.
+  const auto gains = [&](double work) { return work > thresholds::solved * energy; };
   double work = 0;
   if (!bounce(1, qd, work)) return false;
   if (!gains(work)) return true;
@@ -209,13 +201,13 @@ bool ContactSwitch::bounce_without_gain(double t, const std::vector<std::size_t>
     return true;
   }
   ++other_laws_.reduced;
-  double part = 0.5;
-  for (int halving = 0;; ++halving) {
+  for (double part = 0.5;;) {
     take_back();
     if (!bounce(part, qd, work)) return false;
     jump_->other_law = true;
     if (!gains(work) || part == 0) return true;
-    part = halving < most_halvings ? part / 2 : 0;
+    // What is left of a part that is rounding of one is far below any speed of rest.
+    part = part > std::numeric_limits<double>::epsilon() ? part / 2 : 0;
   }
 }
 

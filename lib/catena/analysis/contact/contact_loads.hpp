@@ -31,6 +31,9 @@ namespace catena {
 /// Of the largest speed so far, divided by the length scale for rates of angles: what cannot be told from rest after an
 /// impact or at the end of a slide.
 constexpr double no_speed = 1e-9;
+/// Of Newton's method on the forces of friction, which are nearly linear in each other: without joints one step is
+/// exact, with joints the error is squared in every step.
+constexpr int most_friction_iterations = 30;
 
 class ContactLoads final : public StateLoads {
  public:

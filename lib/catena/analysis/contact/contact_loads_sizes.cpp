@@ -12,13 +12,6 @@
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Newton's method on forces that are nearly linear in each other: without joints one step is exact, with joints the
-// error is squared in every step.
-constexpr int most_iterations = 30;
-
-}  // namespace
 
 /// f + mu sigma N(lambda_0 + B f) = 0, with the memory for its solution.
 struct ContactLoads::Sizes {
@@ -175,7 +168,7 @@ void ContactLoads::find_slope() {
 bool ContactLoads::find_sizes(std::span<const double> lambda) {
   Sizes& s = *sizes_;
   s.f.setZero();
-  for (int iteration = 0; iteration <= most_iterations; ++iteration) {
+  for (int iteration = 0; iteration <= most_friction_iterations; ++iteration) {
     find_residual(lambda);
     if (s.is_solved() && iteration > 0) return true;
     find_slope();

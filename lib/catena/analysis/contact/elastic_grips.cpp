@@ -98,7 +98,7 @@ bool ElasticGrips::slips(std::size_t grip) const {
   const Rate before = T_[grip], behind = T_[grip + 1];
   if (before.f > 0 || behind.f > 0) return margin(grip) < 0;
   const double sum = std::abs(before.d) + std::abs(behind.d);
-  return std::min(before.d * most - behind.d, behind.d * most - before.d) < -ContactProblem::rounding_of_grips * sum;
+  return std::min(before.d * most - behind.d, behind.d * most - before.d) < -thresholds::solved * sum;
 }
 
 void ElasticGrips::settle(const Evaluator& evaluator, std::span<const double> qd, std::vector<ContactState>& states) {
@@ -114,8 +114,7 @@ void ElasticGrips::settle(const Evaluator& evaluator, std::span<const double> qd
         const bool forward = T_[k + 1].f != T_[k].f ? T_[k + 1].f > T_[k].f : T_[k + 1].d > T_[k].d;
         state.direction = forward ? -1 : 1;
         changed = true;
-      } else if (state.direction * slip(k) <
-                 -ContactProblem::rounding_of_grips * (std::abs(u_[k + 1].d) + std::abs(S_[k + 1].d))) {
+      } else if (state.direction * slip(k) < -thresholds::solved * (std::abs(u_[k + 1].d) + std::abs(S_[k + 1].d))) {
         state.direction = 0;
         state.held = held(k);
         changed = true;

@@ -18,10 +18,9 @@ constexpr double steepness = 10;
 // Designs that are left for judging the best one: its gradient, a step of either length, and the gradient of a better
 // one that such a step finds (optimise_design.cpp).
 constexpr int for_judging = 4;
-// Where there are fewer designs than so many times those for judging, nothing is left for it.
-constexpr int many_judgings = 10;
-// Of all designs a search everywhere leaves one in so many for the search from the best one.
-constexpr int one_in_left_near = 10;
+// Of all designs one in so many may be left for something else than the search: by a search everywhere for that from
+// the best one, and for judging where it is no more.
+constexpr int one_in_left = 10;
 
 double size_of(double value, std::span<const double> gradient, const std::vector<double>& range) {
   double sum = 0;
@@ -73,8 +72,8 @@ bool DesignSearch::go_on() {
 
 int DesignSearch::most_evaluations() const {
   const int most = options_.max_evaluations;
-  if (most < many_judgings * for_judging) return most;
-  return most - for_judging - (searches_everywhere(options_.method) && !is_near_ ? most / one_in_left_near : 0);
+  if (most < one_in_left * for_judging) return most;
+  return most - for_judging - (searches_everywhere(options_.method) && !is_near_ ? most / one_in_left : 0);
 }
 
 bool DesignSearch::analyse(std::span<const double> u, Point& point) {

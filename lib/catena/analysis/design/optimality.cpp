@@ -2,12 +2,10 @@
 #include <cmath>
 
 #include "catena/analysis/design/design_problem.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
-
-// An inequality within this part of its size is active; a variable within this part of its range is at a bound.
-constexpr double at_limit = 1e-6;
 
 double norm(const std::vector<double>& v) {
   double sum = 0;
@@ -98,15 +96,15 @@ Stationarity optimality_of(const DesignProblem& problem, std::span<const double>
   const std::vector<double> gradient = scaled(values.gradient, 0);
   std::vector<Limit> limits;
   for (std::size_t k = 0; k < values.unequal.size(); ++k) {
-    if (values.unequal[k] >= -at_limit * unequal_size[k])
+    if (values.unequal[k] >= -thresholds::same_value * unequal_size[k])
       limits.push_back({scaled(values.unequal_gradient, k), false, static_cast<int>(k)});
   }
   for (std::size_t k = 0; k < values.equal.size(); ++k) limits.push_back({scaled(values.equal_gradient, k), true});
   for (std::size_t v = 0; v < n; ++v) {
     const double part = (x[v] - problem.lower[v]) / (problem.upper[v] - problem.lower[v]);
-    if (part > at_limit && part < 1 - at_limit) continue;
+    if (part > thresholds::same_value && part < 1 - thresholds::same_value) continue;
     std::vector<double> bound(n, 0.0);
-    bound[v] = part <= at_limit ? -1 : 1;
+    bound[v] = part <= thresholds::same_value ? -1 : 1;
     limits.push_back({std::move(bound)});
   }
   const std::vector<double> mu = multipliers_of(gradient, limits);

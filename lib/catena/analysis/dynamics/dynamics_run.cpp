@@ -250,7 +250,7 @@ Report Dynamics::start_anew() {
   if (!equations_.factorize(t_, Side::after, q)) return stuck();
   const double jump = equations_.project_velocity(qd, 0) * evaluator_.length_scale();
   run_.jumping.clear();
-  if (jump > no_jump * fastest(evaluator_, before)) {
+  if (jump > thresholds::no_jump * fastest(evaluator_, before)) {
     run_.jumping = drivers_that_jump(evaluator_, run_.smooth_since, t_);
     if (attached_.follower) attached_.follower->jump();
   }

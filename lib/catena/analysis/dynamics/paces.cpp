@@ -28,10 +28,9 @@ std::vector<double> paces_of_bodies(const std::shared_ptr<const Model>& model) {
   std::vector<double> loads(at(plan.coordinates())), rest(loads.size(), 0.0), stiffness(loads.size(), 0.0);
   evaluator.applied_forces(rest, loads);
   evaluator.visit_stiffness(rest, [&](int i, int j, const ElementMatrix& matrix) {
-    constexpr int diagonal = 7;  // of 6 x 6 entries
     for (int k = 0; k < 3; ++k) {
-      stiffness[at(3 * i + k)] += std::abs(matrix[at(diagonal * k)]);
-      stiffness[at(3 * j + k)] += std::abs(matrix[at(diagonal * (k + 3))]);
+      stiffness[at(3 * i + k)] += std::abs(matrix[at(6 * k + k)]);
+      stiffness[at(3 * j + k)] += std::abs(matrix[at(6 * (k + 3) + k + 3)]);
     }
   });
   std::vector<double> paces(model->bodies.size(), 0.0);

@@ -4,13 +4,11 @@
 #include <limits>
 
 #include "catena/analysis/events/event_watch.hpp"
+#include "catena/analysis/motion/step_growth.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
-
-// Of the time between two samples: nearer to the first one nothing is looked for.
-constexpr double smallest_part = 1e-13;
 
 /// Where the parabola through three points has its vertex, and its value there, if that lies between them.
 struct Vertex {
@@ -42,7 +40,8 @@ double EventWatch::locate(std::size_t k, double before, double after, const Stat
   double a = before, b = after, fa = value_at(k, a, state_at), fb = value_at(k, b, state_at);
   // After an event at the start itself the column may have gone beyond and be on its way back.
   for (double part = 0.5; !(fa * side_[k] > 0); part /= 2) {
-    if (part < smallest_part) return before;
+    // Nearer to the first sample nothing is looked for.
+    if (part < shortest_step) return before;
     a = before + (after - before) * part;
     fa = watched(k, a, state_at);
   }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "catena/analysis/kinematics/body_motion.hpp"
+#include "catena/analysis/kinematics/course/step_rules.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/dependence.hpp"
@@ -14,10 +15,7 @@
 namespace catena {
 namespace {
 
-// Newton's method that contracts by 1/4, the least that steps are accepted with (course/step_rules.hpp), brings an
-// error of one length scale to 1e-12 in 20 iterations. Refinement by keep_rate a step, below, brings an error to 1e-14
-// in 7.
-constexpr int max_iterations = 25;
+// Refinement by keep_rate a step, below, brings an error to 1e-14 in 7.
 constexpr int max_refinements = 10;
 // In length scales or rad: a residual below `rounding` is zero, a correction predicted to be below `not_computed` is
 // not computed; one that is solved need not shrink any more.
@@ -30,8 +28,6 @@ constexpr double part_of_extent = 0.01;
 constexpr double keep_distance = 1e-4;
 // Refinement that leaves more than this of an error takes longer than new factors.
 constexpr double keep_rate = 1e-2;
-// A ratio of successive corrections above this asks for new factors.
-constexpr double poor_contraction = 0.1;
 
 }  // namespace
 
@@ -195,14 +191,14 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     // Corrections are the residual times a condition number: they need not become small, but then the residual stays
     // constant.
     const bool small = outcome.residual <= attainable;
-    const bool settled =
-        rate * size <= std::max(not_computed, epsilon * extent_) || outcome.residual > poor_contraction * last_residual;
+    const bool settled = rate * size <= std::max(not_computed, epsilon * extent_) ||
+                         outcome.residual > step_rules::poor_contraction * last_residual;
     if (outcome.residual <= rounding || (outcome.iterations > 0 && small && settled)) {
       outcome.converged = true;
       return outcome;
     }
     last_residual = outcome.residual;
-    if (outcome.iterations == max_iterations) return outcome;
+    if (outcome.iterations == step_rules::most_iterations) return outcome;
     if (!factors_serve() && !factorize()) {
       outcome.factor = factored_.result;
       return outcome;
@@ -222,7 +218,7 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
       const double ratio = size / last_size;
       outcome.contraction = std::max(outcome.contraction, ratio);
       rate = std::max(rate, ratio);
-      if (ratio > poor_contraction) factored_.valid = false;
+      if (ratio > step_rules::poor_contraction) factored_.valid = false;
     } else if (small && size <= std::max(thresholds::solved, thresholds::sum_rounding * extent_)) {
       rate = 0;  // what is left is rounding
     }
@@ -288,7 +284,7 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
       left_.of_rates = std::max(left_.of_rates, rate * size / all);
       return true;
     }
-    if (k > 0 && size > poor_contraction * last_size) {
+    if (k > 0 && size > step_rules::poor_contraction * last_size) {
       if (size > thresholds::solved * all && !factored_here) {
         if (!factorize()) return false;
         factored_here = true;
@@ -380,7 +376,7 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
       if (all > 0) left_.of_multipliers = std::max(left_.of_multipliers, rate * size / all);
       return true;
     }
-    if (ratio > poor_contraction) {
+    if (ratio > step_rules::poor_contraction) {
       left_.of_multipliers = std::max(left_.of_multipliers, size / all);
       return size <= tolerance * all;
     }

@@ -8,8 +8,6 @@ namespace catena {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-// Gradients of this part of the column's size are rounding, by a parameter of any size up to 1e9.
-constexpr double no_gradient = 1e-11;
 
 // A root mean square is none where parameters of size 1 make a change of 1e14 times it: the column is zero but for
 // rounding, 1e-16 of what it is a difference of.
@@ -38,7 +36,7 @@ void MeasureSet::Account::prepare_path() {
 void MeasureSet::Account::add_jump(const MotionSamples& samples, double t, double before, double after) {
   const std::vector<double> moving = samples.moving(t);
   // Limits of columns that do not jump differ by rounding: where the rate is not known nothing is lost by them.
-  const bool jumps = std::abs(before - after) > MotionSamples::no_jump * size_;
+  const bool jumps = std::abs(before - after) > thresholds::no_jump * size_;
   if (keeps_nodes_ && moving.empty() && jumps) jumps_.push_back({t, before - after, before * before - after * after});
   for (std::size_t p = 0; p < moving.size(); ++p) {
     if (moving[p] == 0 || !jumps) continue;
@@ -151,7 +149,7 @@ void MeasureSet::Account::check_ties(MeasureResult& result, const Extreme& extre
       // vanish they are as good as those of the column elsewhere: of a swing that comes back the amplitude may not
       // depend on what its phase does.
       const double unit = std::max({std::abs(here), std::abs(there), extreme.slope_nearby(column_ * parameters_ + p)});
-      const double allowed = thresholds::same_value * unit + no_gradient * size_;
+      const double allowed = thresholds::same_value * unit + thresholds::no_derivative * size_;
       if (std::abs(here - there) <= allowed) continue;
       result.gradient[p] = none;
       result.trouble = fmt::format(

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "catena/analysis/measures/measure_account.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
@@ -96,7 +97,7 @@ void MeasureSet::Account::note_switches(const MotionSamples::Part& part, const M
   for (const MotionSample& sample : part) undecided_ = undecided_ || is_undecided(sample);
   const double value = part.front().value[column_];
   if (last_part_ && part.front().t != piece.from() && part.front().t != last_part_->first && !jumps_at_ &&
-      std::abs(value - last_part_->second) > MotionSamples::no_jump * size_)
+      std::abs(value - last_part_->second) > thresholds::no_jump * size_)
     jumps_at_ = part.front().t;
   last_part_ = {part.back().t, part.back().value[column_]};
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "catena/analysis/measures/sample_places.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
@@ -26,9 +27,6 @@ constexpr double quartic_grows_by = 2 * 32, eighth_grows_by = 2 * 512;
 constexpr double inside = 1e-6, inside_of_instant = 1e-11;
 // A derivative along an instant of which its two parts leave so little is zero: rates are good to 1e-9.
 constexpr double cancelled = 1e-8;
-// Differences for rates begin with this part of a piece, and are halved until they settle to the second, or so often.
-constexpr double first_difference = 1.0 / 32, settled = 1e-11;
-constexpr int most_halvings = 14;
 
 const auto quartic = sample_places::foretelling_weights();
 
@@ -50,7 +48,7 @@ MotionSample MotionSamples::take_one(const Snapshot& snapshot, bool with_derivat
     sample.change.assign(columns_.size(), 0.0);
     derivatives_.at(snapshot, sample.derivative, sample.change);
     for (std::size_t c = 0; c < size_.size(); ++c) {
-      if (std::abs(sample.change[c]) <= no_jump * size_[c]) sample.change[c] = 0;
+      if (std::abs(sample.change[c]) <= thresholds::no_jump * size_[c]) sample.change[c] = 0;
     }
   }
   return sample;
@@ -117,8 +115,8 @@ std::optional<std::vector<double>> MotionSamples::rates(const MotionPiece& piece
   std::vector<double> best(columns, 0.0), last(columns, 0.0);
   std::vector<double> change(columns, std::numeric_limits<double>::infinity());
   const double room = std::min(t - piece.from(), piece.to() - t);
-  for (int n = 0; n < most_halvings; ++n) {
-    const double d = std::ldexp(first_difference * length, -n);
+  for (int n = 0; n < thresholds::most_differences; ++n) {
+    const double d = std::ldexp(thresholds::first_difference * length, -n);
     // In the middle of the piece, or from its end inwards.
     const bool central = room >= 2 * d;
     const double step = central || t - piece.from() < piece.to() - t ? d : -d;
@@ -140,7 +138,7 @@ std::optional<std::vector<double>> MotionSamples::rates(const MotionPiece& piece
         change[c] = moved;
         best[c] = now[c];
       }
-      done = done && change[c] <= settled * std::max(std::abs(best[c]), size_[c] / length);
+      done = done && change[c] <= thresholds::settled_difference * std::max(std::abs(best[c]), size_[c] / length);
     }
     last = now;
     if (done) break;

@@ -81,8 +81,6 @@ struct MotionPiece {
 
 class MotionSamples {
  public:
-  /// A jump below this part of a column's size so far is rounding: limits from both sides of the instant are the same.
-  static constexpr double no_jump = 1e-9;
   /// See above: what the quartic may miss, in parts of a column's size.
   static constexpr double allowed_part = 1e-5;
   /// Of Kronrod's extension of the rule of Gauss with three nodes.

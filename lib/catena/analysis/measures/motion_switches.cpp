@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "catena/analysis/measures/switching.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
@@ -11,9 +12,6 @@ namespace {
 // A switch nearer to an end of a part, in parts of its length, is that end itself: of the jump of a derivative so much
 // is put to the wrong side.
 constexpr double at_end_of_part = 1e-10;
-
-// Derivatives of this part of a column's size are rounding, by a parameter of any size up to 1e9.
-constexpr double no_derivative = 1e-11;
 
 }  // namespace
 
@@ -40,7 +38,8 @@ void MotionSamples::judge_ties(MotionSample& sample) const {
     for (std::size_t p = 0; p < parameters_; ++p) {
       double& derivative = sample.derivative[one.column * parameters_ + p];
       const double apart = std::abs(sample.derivative[one.by * parameters_ + p]);
-      if (apart <= thresholds::same_value * std::abs(derivative) + no_derivative * size_[one.column]) continue;
+      if (apart <= thresholds::same_value * std::abs(derivative) + thresholds::no_derivative * size_[one.column])
+        continue;
       derivative = std::numeric_limits<double>::quiet_NaN();
       sample.undecided |= bit_of_column(one.column);
     }

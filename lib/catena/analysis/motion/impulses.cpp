@@ -5,6 +5,7 @@
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/analysis/pose/minimum_norm.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/columns/reaction.hpp"
 #include "catena/elements/all.hpp"
@@ -112,7 +113,7 @@ std::vector<int> drivers_that_jump(Evaluator& evaluator, double from, double t) 
   note(after = rates(t, Side::after));
   std::vector<int> jump;
   for (std::size_t k = 0; k < drivers.size(); ++k) {
-    if (std::abs(after[k] - before[k]) > no_jump * largest[k]) jump.push_back(drivers[k]);
+    if (std::abs(after[k] - before[k]) > thresholds::no_jump * largest[k]) jump.push_back(drivers[k]);
   }
   std::sort(jump.begin(), jump.end());
   return jump;

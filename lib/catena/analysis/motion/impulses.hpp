@@ -40,10 +40,6 @@ std::vector<double> impulse_of_change(EquationsOfMotion& equations, std::span<co
 std::vector<ConstraintImpulse> impulses_of(EquationsOfMotion& equations, std::span<const double> q,
                                            std::span<const double> qd, std::vector<double> p);
 
-/// A velocity that changes at an instant by less than this part of the largest does not jump: steps keep velocities,
-/// and tables and laws meet their ends, to about 1e-12 of that.
-inline constexpr double no_jump = 1e-9;
-
 /// The drivers whose velocity is another one behind t than before; `from`: an earlier instant since which their
 /// functions are smooth.
 std::vector<int> drivers_that_jump(Evaluator& evaluator, double from, double t);

@@ -26,10 +26,10 @@ struct Start {
   double displacement;
 };
 // The first ones leave a symmetric sketch and hardly change which assembly is nearest; the others are for sketches that
-// lead to a local minimum of the misfit: of 96 six-bars drawn in one line four did. The last one is repeated: one of
-// some 2500 six-bars needed fourteen starts.
+// lead to a local minimum of the misfit: of 96 six-bars drawn in one line four did. The last one is repeated.
 constexpr Start starts[] = {{false, 1e-3}, {false, 0.03}, {false, 0.3}, {false, 1.0}, {true, 0.3},
                             {true, 1.0},   {true, 1.0},   {true, 2.0},  {true, 2.0},  {true, 3.0}};
+// One of some 2500 six-bars needed fourteen.
 constexpr std::size_t most_starts = 24;
 // Beside a place where branches cross or fold, Newton's steps halve the distance to it, so that residuals fall to a
 // quarter each, and end a square root of the tolerance away from it, where all equations look independent. Searches
@@ -115,11 +115,11 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     double turn = 0;
     for (double& move : step_) move = -move;
     for (std::size_t c = 2; c < step_.size(); c += 3) turn = std::max(turn, std::abs(step_[c]));
-    if (turn > far_too_long * largest_turn_of_a_step && damping < 1) {
+    if (turn > far_too_long * thresholds::largest_turn && damping < 1) {
       damping = std::max(10 * damping, 1e-8);
       continue;
     }
-    double factor = turn > largest_turn_of_a_step ? largest_turn_of_a_step / turn : 1;
+    double factor = turn > thresholds::largest_turn ? thresholds::largest_turn / turn : 1;
     double then = 0;
     curve_places_ = evaluator_.curve_places();
     for (; factor >= thresholds::smallest_factor; factor /= 2) {
@@ -180,6 +180,29 @@ bool Assembler::restore_from_beside(std::span<double> q, std::span<const double>
   return !beside_crossing.empty();
 }
 
+void Assembler::give_up(std::span<double> q, std::span<const double> given, std::span<const double> estimate,
+                        AssemblyOutcome& outcome) {
+  if (const int element = element_out_of_range(estimate); element >= 0) {
+    outcome.status = Status::not_assembled;
+    outcome.message = fmt::format(
+        "{} \"{}\" cannot be evaluated in the given configuration: places or lengths are too large for double "
+        "precision",
+        evaluator_.model().element_type(element), evaluator_.model().element_name(element));
+    std::copy(given.begin(), given.end(), q.begin());
+    return;
+  }
+  // The best configuration found may differ a lot from the given one without being of use: keep the given one.
+  const Conflict conflict = find_conflict(evaluator_, *solver_, q);
+  outcome.misfits = conflict.unmet;
+  outcome.status = Status::not_assembled;
+  outcome.message =
+      fmt::format("the constraints cannot all be met from the given configuration; nearest: {}; likely cause: {}",
+                  describe_misfits(evaluator_.model(), outcome.misfits),
+                  describe_held(evaluator_.model()) + describe_cause(evaluator_.model(), conflict));
+  std::copy(given.begin(), given.end(), q.begin());
+  evaluator_.set_configuration(q);
+}
+
 AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   AssemblyOutcome outcome;
   if (plan_.rows == 0) return outcome;
@@ -211,25 +234,7 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
       evaluator_.go_to_curve_places(places);
   }
   if (!met) {
-    if (const int element = element_out_of_range(estimate); element >= 0) {
-      outcome.status = Status::not_assembled;
-      outcome.message = fmt::format(
-          "{} \"{}\" cannot be evaluated in the given configuration: places or lengths are too large for double "
-          "precision",
-          evaluator_.model().element_type(element), evaluator_.model().element_name(element));
-      std::copy(given.begin(), given.end(), q.begin());
-      return outcome;
-    }
-    // The best configuration found may differ a lot from the given one without being of use: keep the given one.
-    const Conflict conflict = find_conflict(evaluator_, *solver_, q);
-    outcome.misfits = conflict.unmet;
-    outcome.status = Status::not_assembled;
-    outcome.message =
-        fmt::format("the constraints cannot all be met from the given configuration; nearest: {}; likely cause: {}",
-                    describe_misfits(evaluator_.model(), outcome.misfits),
-                    describe_held(evaluator_.model()) + describe_cause(evaluator_.model(), conflict));
-    std::copy(given.begin(), given.end(), q.begin());
-    evaluator_.set_configuration(q);
+    give_up(q, given, estimate, outcome);
     return outcome;
   }
   if (weighted_distance(q, estimate) > 0) approach_estimate(q, estimate, tolerance, outcome);

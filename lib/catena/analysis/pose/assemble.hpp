@@ -40,11 +40,10 @@ class Assembler {
   AssemblyOutcome assemble(std::span<double> q, double tolerance = 1e-12);
 
  private:
-  /// A body may turn at most this far in one step: beyond it the linearisation is useless, and linkages change their
-  /// assembly mode.
-  static constexpr double largest_turn_of_a_step = 0.5;
-
   bool restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome);
+  /// Why no configuration was found; q is the given one again.
+  void give_up(std::span<double> q, std::span<const double> given, std::span<const double> estimate,
+               AssemblyOutcome& outcome);
   bool restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance, bool far_too,
                            AssemblyOutcome& outcome);
   void land_on_crossing(std::span<double> q);

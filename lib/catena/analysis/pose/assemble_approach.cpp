@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/assembly/systems/tangent.hpp"
 #include "catena/base/at.hpp"
 
@@ -22,8 +23,6 @@ namespace {
 constexpr int max_approach_iterations = 60;
 // Iterations for a return to the constraints from nearby: if more are needed, the step was too long.
 constexpr int max_return_iterations = 12;
-// Of a distance, below which a difference of two distances is rounding.
-constexpr double seen_in_distance = 1e-12;
 // A slope of this part of the distance changes it by half its square, which is seen; of smaller ones only slopes tell
 // what a step is worth.
 constexpr double unseen_slope = 1e-5;
@@ -126,9 +125,9 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
     double turn = 0;
     for (std::size_t c = 2; c < step_.size(); c += 3) turn = std::max(turn, std::abs(step_[c]));
     const std::vector<double> direction = step_;
-    const double closer = distance * (1 + (unseen ? seen_in_distance : -seen_in_distance));
+    const double closer = distance * (1 + (unseen ? thresholds::solved : -thresholds::solved));
     bool found = false;
-    for (double factor = turn > largest_turn_of_a_step ? largest_turn_of_a_step / turn : 1; factor > 1e-3 && !found;
+    for (double factor = turn > thresholds::largest_turn ? thresholds::largest_turn / turn : 1; factor > 1e-3 && !found;
          factor /= 2) {
       step_ = direction;
       evaluator_.go_to_curve_places(places);

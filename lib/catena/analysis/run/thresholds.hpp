@@ -40,17 +40,42 @@ inline constexpr double closed_gap = 1e-9, no_force = 1e-9;
 /// given to some seven digits, and what motions, differences or null vectors tell is good to 1e-7 and better.
 inline constexpr double same_value = 1e-6;
 
+/// Derivatives of a column by a parameter, of which this part of the column's size is left, are rounding, whatever the
+/// size of the parameter up to 1e9.
+inline constexpr double no_derivative = 1e-11;
+
 /// Two instants that are nearer to each other than this part of the stretch of time that they lie in are one: they are
 /// found to rounding on motions that are known to some eight digits.
 inline constexpr double same_instant = 1e-9;
+
+/// A velocity that changes at an instant by less than this part of the largest does not jump, nor does an acceleration
+/// or a column by less than this part of its size: steps keep velocities, and tables and laws meet their ends, to about
+/// 1e-12 of that.
+inline constexpr double no_jump = 1e-9;
 
 /// Two instants, or functions of time, whose rates differ by less than this part move together: rates are good to 1e-8
 /// and better.
 inline constexpr double same_rate = 1e-6;
 
+/// The product of two vectors, or of the sizes of its terms, that is below this part of the product of their lengths is
+/// none: modes and null vectors come from equations that are solved to 1e-12.
+inline constexpr double no_overlap = 1e-9;
+
+/// Inverse iterations for a null vector: each gains the ratio of the smallest eigenvalue to the next.
+inline constexpr int null_vector_steps = 4;
+
+/// A body may turn at most this far, rad, in one step of a search that follows linearised equations: beyond it they are
+/// useless, and linkages change their assembly mode.
+inline constexpr double largest_turn = 0.5;
+
 /// A place that the scene gives as closed may be open, or reach into the other body, by this part of the length scale
 /// (or rad): configurations are given to some seven digits. More contradicts the scene.
 inline constexpr double given_depth = 1e-6;
+
+/// Differences for a rate are taken over this part of a stretch first, and halved until two of them agree to the second
+/// part, at most so often: the last one is over 2^-18 of the stretch, where rounding of values is 1e-11 of the rate.
+inline constexpr double first_difference = 1.0 / 32, settled_difference = 1e-11;
+inline constexpr int most_differences = 14;
 
 /// A correction that leaves more than this part of the residual, or of the correction before it, is rounding: the
 /// factors are of a neighbouring matrix, and true corrections gain a digit or more.

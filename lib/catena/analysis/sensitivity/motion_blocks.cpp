@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
 #include "catena/base/at.hpp"
 
@@ -114,8 +115,7 @@ bool MotionDerivatives::begin_watched(double from, std::span<const double> rates
   const auto begin = crossed_ == from ? &Track::after : &Track::end;
   const DesignVector& y = tracks_.front().*begin;
   for (std::size_t c = 0; c < n_; ++c) {
-    if (std::abs(rates[c] - y[n_ + c].v) > RecomputedSteps::same_state * std::max(1.0, std::abs(rates[c])))
-      return false;
+    if (std::abs(rates[c] - y[n_ + c].v) > thresholds::same_value * std::max(1.0, std::abs(rates[c]))) return false;
   }
   if (!watched_.place_serves || !goes_on_) {
     for (std::size_t i = 0; i < 2 * n_; ++i) place().y[i] = y[i].v;

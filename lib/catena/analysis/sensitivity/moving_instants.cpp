@@ -13,10 +13,9 @@ namespace {
 // Differences for f''' take this part of the piece after the instant: their error is its fourth power. Of two that
 // differ by less than the second part of their size neither is told from the other.
 constexpr double part_of_piece = 1e-3, no_kink = 1e-6;
-// Differences for rates begin with this part of a stretch, and are halved until they settle to the second part; those
-// that have not settled to the third one tell nothing, as in a stretch that is no longer than rounding.
-constexpr double first_part = 1.0 / 16, settled_rate = 1e-10, unsettled_rate = 1e-5;
-constexpr int most_halved = 12;
+// Differences for rates that have not settled to this part tell nothing, as in a stretch that is no longer than
+// rounding.
+constexpr double unsettled_rate = 1e-5;
 
 /// Largest values of f, f', f'' and of their derivatives by the parameters around an instant.
 struct Sizes {
@@ -101,8 +100,8 @@ std::optional<double> rate_at_end(const MotionStretch& stretch, const std::funct
   const std::optional<double> end = f(stretch.to);
   if (!end) return {};
   double best = std::numeric_limits<double>::quiet_NaN(), last = best, change = std::numeric_limits<double>::infinity();
-  for (int n = 0; n < most_halved; ++n) {
-    const double d = std::ldexp(first_part * (stretch.to - stretch.from), -n);
+  for (int n = 0; n < thresholds::most_differences; ++n) {
+    const double d = std::ldexp(thresholds::first_difference * (stretch.to - stretch.from), -n);
     double sum = weights[0] * *end;
     for (int k = 1; k < 5; ++k) {
       const std::optional<double> value = f(stretch.to - k * d);
@@ -115,7 +114,7 @@ std::optional<double> rate_at_end(const MotionStretch& stretch, const std::funct
       best = now;
     }
     last = now;
-    if (change <= settled_rate * std::abs(best)) break;
+    if (change <= thresholds::settled_difference * std::abs(best)) break;
   }
   if (!(change <= unsettled_rate * std::abs(best))) return {};
   return best;

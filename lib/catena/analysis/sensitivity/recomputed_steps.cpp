@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "catena/analysis/motion/stage_sums.hpp"
+#include "catena/analysis/motion/step_growth.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -20,10 +22,7 @@ constexpr int far_tries_at_start = 3, far_tries = 1;
 constexpr int blocks_between_tries = 8;
 // What a block misses its end by grows with its length to the power of order + 1. The next one is as long as that
 // allows, less a tenth, and changes by no more than what these powers are worth far from it.
-constexpr int order = 8;
-constexpr double length_left = 0.9, most_longer = 1.5, least_shorter = 0.3;
-// Below this misfits are rounding.
-constexpr double rounding = 1e-14;
+constexpr double most_longer = 1.5, least_shorter = 0.3;
 
 }  // namespace
 
@@ -179,7 +178,7 @@ std::size_t RecomputedSteps::join(std::span<const Step> steps, From from, Step& 
   const auto follows = [&](std::size_t count) {
     const std::size_t k = from == From::front ? count - 2 : given - count;
     return std::equal(steps[k].end.begin(), steps[k].end.end(), steps[k + 1].begin.begin(), [](double a, double b) {
-      return std::abs(a - b) <= same_state * std::max({1.0, std::abs(a), std::abs(b)});
+      return std::abs(a - b) <= thresholds::same_value * std::max({1.0, std::abs(a), std::abs(b)});
     });
   };
   const bool joins = far_ < (from == From::front ? far_tries_at_start : far_tries);
@@ -189,8 +188,10 @@ std::size_t RecomputedSteps::join(std::span<const Step> steps, From from, Step& 
   waits_ = std::max(waits_ - 1, 0);
   for (; count > 1;) {
     if (!take(count)) return 0;
-    const double missed = misfit(joined), allowed = more_misfit * (single_misfit_ + rounding), h = length(count);
-    const double change = length_left * std::pow(allowed / std::max(missed, rounding), 1.0 / (order + 1));
+    const double missed = misfit(joined), allowed = more_misfit * (single_misfit_ + thresholds::sum_rounding),
+                 h = length(count);
+    const double change = step_safety * std::pow(allowed / std::max(missed, thresholds::sum_rounding),
+                                                 1.0 / (dormand_prince_8().order + 1));
     if (missed <= allowed) {
       // Where fewer were given than could be taken nothing is learned about how many can.
       // Of what is missed a part is the motion's own: at least one step more is tried.
@@ -198,7 +199,7 @@ std::size_t RecomputedSteps::join(std::span<const Step> steps, From from, Step& 
       if (waits_ == 0) reach_ = std::max(reach_, h * std::clamp(change, std::min(more, most_longer), most_longer));
       return count;
     }
-    if (count == 2 && missed > far_more_misfit * (single_misfit_ + rounding)) ++far_;
+    if (count == 2 && missed > far_more_misfit * (single_misfit_ + thresholds::sum_rounding)) ++far_;
     waits_ = blocks_between_tries;
     reach_ = h * std::max(change, least_shorter);
     while (count > 1 && length(count) > reach_) --count;

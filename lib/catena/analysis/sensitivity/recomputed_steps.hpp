@@ -56,8 +56,6 @@ class RecomputedSteps {
   };
   /// Steps of the motion that are joined to one, at most.
   static constexpr std::size_t most_at_once = 16;
-  /// States before and after an instant that differ by less are one: whole turns are 6.
-  static constexpr double same_state = 1e-6;
 
   explicit RecomputedSteps(const Evaluator& evaluator);
 

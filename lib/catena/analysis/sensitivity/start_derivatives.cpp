@@ -9,6 +9,7 @@
 
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/whole_turns.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/elastic_gaps.hpp"
@@ -18,14 +19,9 @@ namespace {
 
 // Velocities whose last round changed them by more than this part are not settled: derivatives are good to it.
 constexpr double settled = 1e-9;
-// Given velocities that are missed by more than this part of the largest one: what derivatives lack is of that size,
-// below which "verify" does not see it.
-constexpr double missed = 1e-6;
 // Coordinates that assembly may not change: in weights of the others, so many that what is left of a change is
 // rounding.
 constexpr double held_weight = 1e16;
-// Places that differ by this part of the largest one are where they were given, but for rounding.
-constexpr double rounding_of_start = 1e-14;
 
 /// The points at which one body is attached: by constraints, or by forces where these have none.
 struct AttachedPoints {
@@ -132,7 +128,8 @@ bool StartDerivatives::prepare_places(std::span<const double> q) {
     place_weight_[at(c)] = (c % 3 == 2 ? radius * radius : 1) * (is_held(body, c % 3) ? held_weight : 1);
     if (!by_model_.places) continue;
     const double apart = q[at(c)] - given[at(c)];
-    if (std::abs(apart) > rounding_of_start * extent[c % 3 == 2 ? 1 : 0]) apart_[at(c)] = apart;
+    // Else the place is where it was given.
+    if (std::abs(apart) > thresholds::sum_rounding * extent[c % 3 == 2 ? 1 : 0]) apart_[at(c)] = apart;
   }
   const auto weigh = [&] {
     for (int c = 0; c < 3 * plan_.moving; ++c) assembly_.add_diagonal(c, place_weight_[at(c)]);
@@ -280,7 +277,8 @@ bool StartDerivatives::prepare_velocities(DesignMechanism& mechanism, std::span<
     largest = std::max({largest, std::abs(v[c]), given_[c] ? std::abs(wanted_[c]) : 0.0});
     if (given_[c]) off = std::max(off, std::abs(v[c] - wanted_[c]));
   }
-  if (off > missed * largest) {
+  // What derivatives lack is of that size, below which "verify" does not see it.
+  if (off > thresholds::same_value * largest) {
     return fail(fmt::format(
         "the given velocities do not meet the constraints, which change them by {:.3g}: give such as meet them", off));
   }

@@ -20,9 +20,6 @@ namespace {
 // motions keep to their tolerance, 1e-8 unless it is asked for less.
 constexpr double same_on_both_sides = thresholds::same_value;
 
-// So much of an instant is none: what a column changes by in it is rounding of zero.
-constexpr double no_time = 1e-9;
-
 bool differ(double a, double b, double rounding) {
   return !(std::abs(a - b) <= same_on_both_sides * std::max(std::abs(a), std::abs(b)) + rounding);
 }
@@ -166,9 +163,10 @@ bool StateDerivatives::derive(const ColumnSet& columns, const Snapshot& snapshot
   if (!find(snapshot)) return false;
   differentiate(columns, snapshot, out, column_after_);
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    // What the columns change by as fast as with the parameters, which move the instant at their rates.
+    // What the columns change by as fast as with the parameters, which move the instant at their rates: in what is none
+    // of an instant that is rounding of zero.
     double rounding = 0;
-    const double moment = no_time * std::max(std::abs(snapshot.t), 1e-3);
+    const double moment = thresholds::same_instant * std::max(std::abs(snapshot.t), 1e-3);
     for (std::size_t p = 0; p < rate.size(); ++p) {
       const double steepest = std::max(std::abs(before_[k * rate.size() + p]), std::abs(out[k * rate.size() + p]));
       if (rate[p] != 0 && std::isfinite(steepest / rate[p]))
@@ -180,7 +178,7 @@ bool StateDerivatives::derive(const ColumnSet& columns, const Snapshot& snapshot
     for (std::size_t p = 0; p < rate.size(); ++p) {
       double& derivative = out[k * rate.size() + p];
       if (rate[p] == 0 || std::isnan(derivative)) continue;
-      const double small = no_time * size * std::abs(rate[p]) / std::max(std::abs(snapshot.t), 1e-3);
+      const double small = thresholds::same_instant * size * std::abs(rate[p]) / std::max(std::abs(snapshot.t), 1e-3);
       if (!jumps && !differ(before_[k * rate.size() + p], derivative, std::isfinite(small) ? small : 0)) continue;
       derivative = std::numeric_limits<double>::quiet_NaN();
       jump_ = fmt::format(

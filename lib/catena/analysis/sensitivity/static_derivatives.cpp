@@ -11,12 +11,6 @@
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Places are rounded to this part of the length scale: what they make of the stiffest spring is no push either.
-constexpr double rounding_of_places = 1e-14;
-
-}  // namespace
 
 StaticDerivatives::StaticDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters)
     : StateDerivatives(evaluator, models, parameters), system_(evaluator.shared_plan(), SaddleBlock::elements) {}
@@ -33,7 +27,7 @@ std::vector<int> StaticDerivatives::gaps_without_force(const Snapshot& snapshot,
     });
   }
   const double none =
-      std::max(thresholds::no_force * largest, rounding_of_places * evaluator().length_scale() * stiffest);
+      std::max(thresholds::no_force * largest, thresholds::sum_rounding * evaluator().length_scale() * stiffest);
   std::vector<int> open;
   touches = -1;
   for (const int r : plan().gap_rows) {

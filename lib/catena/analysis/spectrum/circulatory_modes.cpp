@@ -21,9 +21,6 @@ namespace {
 
 using Dense = Eigen::MatrixXd;
 
-// Left and right subspaces that are closer to perpendicular than this tell nothing about the value: it stays as it is.
-constexpr double lost_angle = 1e-12;
-
 }  // namespace
 
 double CirculatoryMode::frequency() const { return std::sqrt(std::complex<double>(omega2, imaginary)).real(); }
@@ -69,7 +66,8 @@ class CirculatoryMotions::Refinement {
       for (Eigen::Index j = 0; j < x.cols(); ++j)
         rounding = std::max(rounding, floor_.between(span(zy, j), span(zx, k)));
     }
-    const bool known = angle > lost_angle;
+    // Left and right subspaces that are perpendicular but for rounding tell nothing about the value: it stays as it is.
+    const bool known = angle > thresholds::solved;
     if (known) {
       b = (overlap.inverse() * b).eval();
       rounding /= angle;

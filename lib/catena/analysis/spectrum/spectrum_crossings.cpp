@@ -9,13 +9,10 @@
 namespace catena {
 namespace {
 
-// Accuracy of a crossing in parts of the interval, and how many crossings an interval may have.
-constexpr double crossing_accuracy = 1e-13;
+// How many crossings an interval may have.
 constexpr std::size_t most_crossings = 40;
 // Crossings nearer to each other than this part of the interval are one.
 constexpr double same_crossing = 1e-9;
-// Of golden section for a dip.
-constexpr int most_dip_steps = 30;
 
 std::vector<double> real_values(const CirculatoryModes& found) {
   std::vector<double> values;
@@ -62,7 +59,10 @@ double squared_distance(const CirculatoryModes& found, double omega2) {
 class Crossing {
  public:
   Crossing(const SpectrumAt& at, const SpectrumSample& low, const SpectrumSample& high)
-      : at_(at), low_(low), high_(high), accuracy_(crossing_accuracy * std::max(std::abs(high.s - low.s), 1e-300)) {}
+      : at_(at),
+        low_(low),
+        high_(high),
+        accuracy_(thresholds::carried_rounding * std::max(std::abs(high.s - low.s), 1e-300)) {}
 
   /// False where a sample between cannot be had. Then low() and high() enclose the change.
   bool locate() {
@@ -183,7 +183,9 @@ bool find_hidden_change(const SpectrumAt& at, const SpectrumSample& a, const Spe
     const double bend = ((hc - hb) * x - (ha - hb) * y) / (x * y * (y - x));
     if (hb - rate * rate / (4 * bend) > 0.5 * hb) continue;
     double low = a.s, middle = b.s, high = c.s, least = hb;
-    for (int step = 0; step < most_dip_steps; ++step) {
+    // Near its least a quantity is level to rounding over more than this part.
+    const double width = high - low;
+    for (int step = 0; step < thresholds::most_bisections && high - low > thresholds::same_value * width; ++step) {
       const bool right = high - middle > middle - low;
       hidden.s = right ? middle + thresholds::golden_part * (high - middle)
                        : middle - thresholds::golden_part * (middle - low);

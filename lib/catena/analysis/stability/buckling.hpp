@@ -26,6 +26,7 @@
 
 #include "catena/analysis/run/analysis_report.hpp"
 #include "catena/analysis/run/system_state.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
 #include "catena/analysis/stability/path_system.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
@@ -54,9 +55,6 @@ struct BucklingReport : AnalysisReport {
 
 class Buckling {
  public:
-  /// Part of a load's distance that Lanczos' method, repeated where the load is, leaves of it.
-  static constexpr double refined_load = 1e-12;
-
   /// `model`: at options.present.
   Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options,
            const PlanOptions& plan_options = {});

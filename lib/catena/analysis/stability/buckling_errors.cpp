@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/stability/buckling.hpp"
+#include "catena/analysis/stability/load_search.hpp"
 
 namespace catena {
 namespace {
@@ -14,10 +16,8 @@ namespace {
 // by 80 at the median.
 constexpr double usual_load_part = 0.006;
 // In parts of a load's distance: what the search leaves of it, which ends at a bracket of 1e-14 but mostly hits the
-// root before; and Lanczos' method.
+// root before.
 constexpr double located_load = 2e-15;
-// Parts of the distance by which the parameter is moved to see how the stiffness changes.
-constexpr double aside = 1e-4;
 
 }  // namespace
 
@@ -35,13 +35,13 @@ void Buckling::find_errors(BucklingReport& report) {
       for (std::size_t c = 0; c < product.size(); ++c) sum += v[c] * product[c];
       return sum;
     };
-    const double slope =
-        (stiffness(load + aside * distance) - stiffness(load - aside * distance)) / (2 * aside * distance);
+    const double slope = (stiffness(load + load_difference * distance) - stiffness(load - load_difference * distance)) /
+                         (2 * load_difference * distance);
     double error = std::numeric_limits<double>::quiet_NaN();
     if (place_load(load).ok()) {
       const StiffnessFloor floor(system_, loaded_, 0);
       error = usual_load_part * floor(v) / std::abs(slope) +
-              (groups_->are_small() ? located_load : refined_load) * distance;
+              (groups_->are_small() ? located_load : thresholds::solved) * distance;
     }
     report.errors.push_back(error);
   }

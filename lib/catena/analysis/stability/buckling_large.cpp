@@ -255,7 +255,7 @@ Report Buckling::find_by_inertia(double step, std::vector<Load>& loads, const st
       const double next = round == 0 ? load->distance : now - gap * (now - before) / (gap - gap_before);
       before = std::exchange(now, next);
       gap_before = gap;
-      if (!(std::abs(now - before) > refined_load * std::abs(now))) break;
+      if (!(std::abs(now - before) > thresholds::solved * std::abs(now))) break;
     }
     if (load) loads.push_back({before, std::move(load->shape)});
   }

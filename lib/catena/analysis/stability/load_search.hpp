@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
+
 namespace catena {
 
 class FirstLoadStep {
@@ -58,6 +60,9 @@ class FirstLoadStep {
 /// How far loads are looked for, in first steps: one beyond would be 1e8 times a value that already changes the
 /// stiffness visibly.
 inline constexpr double farthest_load = 1e8;
+/// Parts of its distance by which a load is moved to see how stiffnesses change: what changes is far above rounding
+/// there, and of what bends little is seen.
+inline constexpr double load_difference = 1e-4;
 /// Samples an octave of the distance from the present value, and within the first step.
 inline constexpr int samples_an_octave = 6;
 /// Calls f(distance) for growing distances up to `farthest` first steps, until it returns false.
@@ -73,9 +78,8 @@ void for_each_distance(double first_step, double farthest, F&& f) {
 /// Whether load `a` is told before load `b`: the nearer one, of two that lie equally far the positive one.
 template <class Load>
 bool comes_first(const Load& a, const Load& b) {
-  constexpr double equally_far = 1e-12;  // loads are located to 1e-14 of their distance
   const double near = std::abs(std::abs(a.distance) - std::abs(b.distance));
-  if (near <= equally_far * std::abs(a.distance)) return a.distance > b.distance;
+  if (near <= thresholds::solved * std::abs(a.distance)) return a.distance > b.distance;
   return std::abs(a.distance) < std::abs(b.distance);
 }
 

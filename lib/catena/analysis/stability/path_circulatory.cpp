@@ -8,15 +8,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/spectrum_crossings.hpp"
 #include "catena/analysis/stability/path_critical.hpp"
 
 namespace catena {
 namespace {
-
-// Steps of inverse iteration for a left null vector.
-constexpr int left_vector_steps = 4;
 
 /// The points of one step.
 class StepPoints {
@@ -63,7 +61,7 @@ bool PathSystem::spectrum(const PathPoint& x, CirculatoryModes& found) {
 std::vector<double> PathSystem::left_null_vector() {
   std::vector<double> given(given_.size(), 0.0), w(given_.size());
   for (std::size_t c = 0; c < weight_.size(); ++c) w[c] = std::sin(1.0 + 1.7 * static_cast<double>(c));
-  for (int k = 0; k < left_vector_steps; ++k) {
+  for (int k = 0; k < thresholds::null_vector_steps; ++k) {
     for (std::size_t c = 0; c < weight_.size(); ++c) given[c] = weight_[c] * w[c];
     tangent_->solve_to_rounding(given, w, true);
     double square = 0;

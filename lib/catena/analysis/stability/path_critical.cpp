@@ -13,8 +13,8 @@ namespace {
 // Of s: accuracy of a critical point.
 constexpr double critical_accuracy = 1e-11;
 constexpr int power_steps = 3;
-// Part of |v_i d_i| that <v, d> must have at a limit point, and part of |v| |d| below which d has no component along v.
-constexpr double limit_part = 1e-5, no_overlap = 1e-9;
+// Part of |v_i d_i| that <v, d> must have at a limit point.
+constexpr double limit_part = 1e-5;
 
 // The quantities at one place of the step.
 struct Trial {
@@ -140,7 +140,7 @@ bool crosses_another(PathSystem& system, const PathPoint& point, std::span<const
     d += derivative[k] * derivative[k];
   }
   const double range = system.along_parameter(1).p;
-  return std::abs(sum) <= limit_part * terms || terms <= no_overlap * std::sqrt(v * d) ||
+  return std::abs(sum) <= limit_part * terms || terms <= thresholds::no_overlap * std::sqrt(v * d) ||
          terms * range <= thresholds::no_force * system.statics().force_size() * travel;
 }
 

@@ -22,9 +22,9 @@
 namespace catena {
 namespace {
 
-// Faults (static_active_set.hpp) below the first are rounding of a point that is solved; the place of a change is
-// located until the largest is below the second, and all that are as good as closed there change.
-constexpr double no_fault = 1e-10, located_fault = 1e-12;
+// Faults (static_active_set.hpp) below this are rounding of a point that is solved, and all that are as good as closed
+// at the place of a change change there; it is located until the largest fault is that of solved equations.
+constexpr double no_fault = 1e-10;
 // How often sets may change without a step between, besides once each.
 constexpr int most_changes_here = 4;
 
@@ -49,7 +49,8 @@ bool Path::March::change_within(PathPoint& next, double& s, bool& located) {
   PathPoint point = x_;
   s = 0;
   // What touched at the present point, without force, may be about to change there.
-  for (int k = 0; k < thresholds::most_bisections && fault < -located_fault && std::nextafter(low, high) < high; ++k) {
+  for (int k = 0; k < thresholds::most_bisections && fault < -thresholds::solved && std::nextafter(low, high) < high;
+       ++k) {
     double trial = low + (high - low) * low_fault / (low_fault - high_fault);
     if (k % 3 == 2) trial = 0.5 * (low + high);
     PathPoint found = system_.advanced(x_, direction_, trial);
@@ -58,7 +59,7 @@ bool Path::March::change_within(PathPoint& next, double& s, bool& located) {
       return false;
     }
     const double there = largest_fault(found);
-    if (there > located_fault) {
+    if (there > thresholds::solved) {
       high = trial;
       high_fault = there;
       continue;

@@ -14,8 +14,6 @@ namespace {
 
 // Steps grow only after four iterations and fewer (path_march.cpp): one that needs twelve is too long.
 constexpr int most_iterations = 12;
-// Solved: residual forces in parts of the largest force, constraints in length scales, the place on the path.
-constexpr double solved = 1e-13, place_solved = 1e-12;
 // Accepted where rounding prevents a smaller residual.
 constexpr double nearly_solved = 1e-9;
 // Steps larger than this have left the path: parts of the mechanism's extent, or rad.
@@ -184,9 +182,9 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     const double place = way(from, x, t) - s;
     const double force = system_.force_norm({given_.data(), at(plan_.columns)});
     const double rounding = k > 0 ? system_.rounding_force() : 0, scale = system_.force_scale(x.lambda) + rounding;
-    const double error =
-        std::max({scale > 0 ? force / scale : 0, system_.phi_norm(), solved / place_solved * std::abs(place)});
-    const double exact = std::max(solved, 10 * system_.rounding_change());
+    const double error = std::max({scale > 0 ? force / scale : 0, system_.phi_norm(),
+                                   thresholds::carried_rounding / thresholds::solved * std::abs(place)});
+    const double exact = std::max(thresholds::carried_rounding, 10 * system_.rounding_change());
     const double noise = exact + (scale > 0 ? rounding / scale : 0);
     if (error <= exact || (k > 0 && error <= nearly_solved && error >= 0.5 * before)) return k;
     if (!std::isfinite(error)) return -1;
@@ -209,8 +207,9 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
       return k;
     }
     // A law whose own value is zero at rest leaves no force to compare the residual with.
-    if (is_circulatory() && k > 0 && system_.phi_norm() <= exact && std::abs(place) <= place_solved &&
-        std::abs(dp) <= solved * scale_ && system_.change_norm({newton_.data(), at(plan_.columns)}) <= solved)
+    if (is_circulatory() && k > 0 && system_.phi_norm() <= exact && std::abs(place) <= thresholds::solved &&
+        std::abs(dp) <= thresholds::carried_rounding * scale_ &&
+        system_.change_norm({newton_.data(), at(plan_.columns)}) <= thresholds::carried_rounding)
       return k;
     make_newton_step(x, dp);
   }

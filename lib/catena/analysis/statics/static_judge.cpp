@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "catena/analysis/balance/descent_rules.hpp"
 #include "catena/analysis/run/far_places.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/statics/solvers/static_steps.hpp"
@@ -11,9 +12,6 @@
 
 namespace catena {
 namespace {
-
-// Largest remaining change where forces are known only to rounding of stiff springs, length scales or rad.
-constexpr double rounded_change = 1e-9;
 
 // Takes the part along a mode out of the change, in the metric (1, 1, radius^2).
 void take_out(StaticSystem& system, std::span<const double> mode, std::vector<double>& change) {
@@ -57,13 +55,13 @@ bool StaticJudge::is_accurate(std::span<const double> lambda, const Certificate&
   const StaticStep step = system_.solve(force, gap, force_rounding);
   std::vector<double> change(step.change.begin(), step.change.end());
   if (certificate.neutral && !certificate.mode.empty()) take_out(system_, certificate.mode, change);
-  if (system_.change_norm(change) <= rounded_change || certificate.neutral_modes < 2)
-    return system_.change_norm(change) <= rounded_change;
+  if (system_.change_norm(change) <= descent::rounded_change || certificate.neutral_modes < 2)
+    return system_.change_norm(change) <= descent::rounded_change;
   // Of several neutral motions a certificate has one.
   std::optional<FreeMotions> free = find_free_motions(system_, lambda, neutral_part);
   if (!free) return false;
   take_out_all(system_, std::move(free->shapes), change);
-  return system_.change_norm(change) <= rounded_change;
+  return system_.change_norm(change) <= descent::rounded_change;
 }
 
 }  // namespace catena

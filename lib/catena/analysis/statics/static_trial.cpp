@@ -24,8 +24,6 @@ constexpr int most_downhill_work = 20'000'000;
 constexpr double largest_polish = 0.05;
 // Below this interior-point iterations only accumulate rounding: Newton's method does the rest.
 constexpr double finest_barrier = 1e-10;
-// Tolerance of gaps and their forces, whatever the option: the last steps are cheap.
-constexpr double gap_tolerance = 1e-12;
 // Steps that do not converge soon rarely do: more are allowed only after other methods have failed. With more at once a
 // chain over a drum takes 247 iterations in place of 145.
 constexpr int few_first_steps = 40, most_first_steps = 80;
@@ -131,7 +129,7 @@ StaticOutcome StaticTrial::optimise(std::vector<double>& q, std::vector<double>&
 StaticOutcome StaticTrial::run_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way,
                                          StaticResult& result) {
   const StaticGapOptions exact{.first_steps = result.iterations == 0 ? few_first_steps : most_first_steps,
-                               .tolerance = std::min(options_.tolerance, gap_tolerance)};
+                               .tolerance = std::min(options_.tolerance, thresholds::assembled)};
   StaticOutcome outcome;
   if (way == StaticWay::ipopt || way == StaticWay::nlopt) {
     system_.use_gaps();

@@ -40,6 +40,7 @@ class LaneKernel : LaneLoads<V> {
   using Base::unit_;
   using typename Base::Mask;
   using typename Base::P;
+  // As many as kinematics/course/step_rules.hpp allows one motion.
   static constexpr int most_iterations = 25;
   // In length scales or rad, as in kinematics/driven_solver.cpp: a correction below `negligible` is not computed; one
   // below `rounding_floor` need not shrink any more.

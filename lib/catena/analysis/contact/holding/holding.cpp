@@ -27,9 +27,6 @@ namespace {
 // Of the loads, and of the forces that balance them: what is left unbalanced by rounding. Where places wedge a body the
 // forces grow without bound as friction falls to the least that holds.
 constexpr double balanced = 1e-11, balanced_of_forces = thresholds::sum_rounding;
-// The slopes of joints follow the forces until u falls by rounding alone, and no oftener than this: each turn leaves
-// a part of the way, about a tenth at most where statics determines all but one force.
-constexpr int most_turns = 60;
 // Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
 constexpr double most_friction = 1e8;
 
@@ -154,10 +151,11 @@ std::optional<double> least_with_slopes(HoldingTest& holds) {
   return high;
 }
 
-/// From these slopes on, each the one at the forces found with that before.
+/// From these slopes on, each the one at the forces found with that before, until u falls by rounding alone: each turn
+/// leaves a part of the way, about a tenth at most where statics determines all but one force.
 std::optional<double> least_from_slopes(HoldingTest& holds) {
   std::optional<double> least = least_with_slopes(holds);
-  for (int turn = 0; least && *least > 0 && turn < most_turns; ++turn) {
+  for (int turn = 0; least && *least > 0 && turn < thresholds::most_bisections; ++turn) {
     holds(*least);
     holds.press();
     const std::optional<double> next = least_with_slopes(holds);

@@ -26,6 +26,8 @@
 #include <utility>
 #include <vector>
 
+#include "catena/analysis/run/thresholds.hpp"
+
 namespace catena {
 
 class ContactProblem {
@@ -56,8 +58,6 @@ class ContactProblem {
   static constexpr double no_response = 1e-11;
   /// Of the terms of a sum: what is left of none. States that do not fit miss by parts of their loads.
   static constexpr double rounding_of_sums = 1e-9;
-  /// Of the terms of a slip, and of the tensions beside a grip: rounding.
-  static constexpr double rounding_of_grips = 1e-12;
 
   double& D(std::size_t row, std::size_t column) { return d_[row * b.size() + column]; }
   double D(std::size_t row, std::size_t column) const { return d_[row * b.size() + column]; }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "catena/analysis/contact/problem/contact_problem.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 std::vector<std::size_t> ContactProblem::grips_of(std::size_t head) const {
@@ -54,14 +55,14 @@ bool ContactProblem::solve_rope(std::size_t head) {
     solve_rope_states(head);
     const auto is_wrong = [&](std::size_t k) {
       const double size = std::abs(tension_before(k)) + std::abs(x[2 * k + 1]);
-      if (state[k] == State::sticks) return misfit(k) > rounding_of_grips * size;
+      if (state[k] == State::sticks) return misfit(k) > thresholds::solved * size;
       if (place[k].slip != 0) return false;
       double slip = b[2 * k + 1], terms = std::abs(slip);
       for (std::size_t c = 0; c < x.size(); ++c) {
         slip += D(2 * k + 1, c) * x[c];
         terms += std::abs(D(2 * k + 1, c) * x[c]);
       }
-      return direction[k] * slip < -rounding_of_grips * terms;
+      return direction[k] * slip < -thresholds::solved * terms;
     };
     const auto wrong = std::find_if(grips.begin(), grips.end(), is_wrong);
     if (wrong == grips.end()) {

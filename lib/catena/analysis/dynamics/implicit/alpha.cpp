@@ -4,19 +4,15 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/implicit/implicit_step.hpp"
+#include "catena/analysis/motion/step_growth.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
 
-constexpr int most_repetitions = 40;   // of Newton's method, for steps of one length; half a digit each
-constexpr int usual_repetitions = 10;  // a step that needs more is shortened
-// What is left of the equations of a step, as a part of the error that it may have: it does not disturb the estimate.
-constexpr double unsolved = 0.01;
-constexpr double cautious = 0.9;
-constexpr double shortest = 0.2, longest = 4;  // of steps that follow each other
-constexpr double starting_step = 0.02;         // parts of the time scale, times the cube root of the tolerance
-constexpr int most_trials = 100;
+constexpr int usual_repetitions = 10;   // of Newton's method; a step that needs more is shortened, if it may be
+constexpr double longest = 4;           // of steps that follow each other
+constexpr double starting_step = 0.02;  // parts of the time scale, times the cube root of the tolerance
 
 }  // namespace
 
@@ -69,7 +65,7 @@ bool Alpha::advance(double limit) {
     evaluator.take_turns(motion_.q(std::span(y_)));
     stepped_by_runge_kutta_ = false;
   }
-  for (int trial = 0; trial < most_trials && !crossing_; ++trial) {
+  for (int trial = 0; trial < most_rejections && !crossing_; ++trial) {
     evaluator.go_to_curve_places(curve_places_);
     const double remaining = limit - t_;
     const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
@@ -93,7 +89,7 @@ bool Alpha::advance(double limit) {
     const double error = fixed ? 0 : error_of_step(h);
     if (!(error < 1)) {
       ++evaluator.counters.rejected;
-      h_ = h * std::clamp(cautious / std::cbrt(error), shortest, cautious);
+      h_ = h * std::clamp(step_safety / std::cbrt(error), largest_cut, step_safety);
       continue;
     }
     if (finish()) {
@@ -136,7 +132,7 @@ bool Alpha::solve(double h) {
   for (std::size_t c = 0; c < n; ++c) shifted_[c] = slope_[n + c] + ratio * (own_[c] - slope_[n + c]);
   std::copy(shifted_.begin(), shifted_.end(), own_new_.begin());
   double before = std::numeric_limits<double>::infinity();
-  const int most = options_.fixed_step > 0 ? most_repetitions : usual_repetitions;
+  const int most = options_.fixed_step > 0 ? thresholds::most_bisections : usual_repetitions;
   for (int k = 0; k < most; ++k) {
     place(h);
     if (!motion_.derivative(t_new_, Side::before, y_new_, slope_new_)) return false;
@@ -154,7 +150,7 @@ bool Alpha::solve(double h) {
       largest = std::max(largest, std::abs(own_new_[c]) / unit);
       largest_change = std::max(largest_change, std::abs(residual_[c]) / unit);
     }
-    const double change = size_of(std::span(residual_).first(n), h, b_ * h * h, g_ * h, unsolved);
+    const double change = size_of(std::span(residual_).first(n), h, b_ * h * h, g_ * h, implicit_step::left_part);
     if (!std::isfinite(change)) return false;
     // Of vibrations that have died away rounding is left: of places, and corrections that no longer become smaller.
     const bool stalls = change > thresholds::least_gain * before;
@@ -234,7 +230,7 @@ void Alpha::accept(double h, double error) {
   ++motion_.equations().evaluator().counters.steps;
   observe(h);
   linearized_ = false;
-  const double ratio = std::clamp(cautious / std::cbrt(std::max(error, 1e-6)), shortest, longest);
+  const double ratio = std::clamp(step_safety / std::cbrt(std::max(error, 1e-6)), largest_cut, longest);
   // Factors are made anew at every step; a length that stays keeps the second difference of accelerations exact.
   if (ratio < 1 || ratio > 1.2)
     h_ = h * ratio;

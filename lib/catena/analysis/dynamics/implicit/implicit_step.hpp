@@ -15,6 +15,10 @@
 
 namespace catena::implicit_step {
 
+/// What is left of the equations of a step or of its stages, as a part of the error that it may have: it does not
+/// disturb the estimate.
+inline constexpr double left_part = 0.01;
+
 /// Both ends of a step; slopes hold the accelerations that places are not interpolated by.
 struct Ends {
   double from, to;

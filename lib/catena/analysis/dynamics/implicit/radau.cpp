@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/implicit/implicit_step.hpp"
+#include "catena/analysis/motion/step_growth.hpp"
 
 namespace catena {
 namespace {
@@ -19,11 +20,9 @@ constexpr double rough_part = 5;
 // by an angle within a step is off by so much that this ratio grows with the square of the step.
 constexpr double slowest_convergence = 0.3;
 constexpr double first_step = 0.05;  // parts of the time scale, times the fourth root of the tolerance
-constexpr double safety = 0.9;
-constexpr double least_ratio = 0.2, most_ratio = 8;  // of steps that follow each other
+constexpr double most_ratio = 8;     // of steps that follow each other
 // Steps that could be this much longer keep their length, and the factors with it (Hairer and Wanner).
 constexpr double not_worth_it = 1.2;
-constexpr int most_failures = 100;
 // Stages are of two orders less than the ends of a step, and lie beside the motion by some of the errors that are
 // allowed; what has died away within a step is farther off. By the polynomial of the stages alone, instants of impacts
 // were wrong by up to 20 tolerances in random motions, by that of the ends by at most one.
@@ -84,7 +83,7 @@ bool Radau::advance(double limit) {
     double h = lands ? remaining : h_;
     // Two equal steps in place of a long one and a tiny one.
     if (!lands && !fixed && 2 * h > remaining) h = remaining / 2;
-    if ((h < scale_.smallest_step(t_) && !lands) || failures > most_failures) return false;
+    if ((h < scale_.smallest_step(t_) && !lands) || failures > most_rejections) return false;
     t_new_ = lands ? limit : t_ + h;
     predict(h);
     if (!prepare(h)) return false;
@@ -142,7 +141,7 @@ void Radau::accept(double h, double error) {
   ++motion_.equations().evaluator().counters.steps;
   observe(h);
   // The step that the error asks for, and that which the course of errors foresees.
-  const double factor = safety * (1 + 2.0 * most_corrections) / (corrections_ + 2.0 * most_corrections);
+  const double factor = step_safety * (1 + 2.0 * most_corrections) / (corrections_ + 2.0 * most_corrections);
   double ratio = factor / std::pow(std::max(error, 1e-8), 0.25);
   if (last_error_ > 0) {
     const double course = factor * h / last_h_ * std::pow(last_error_ / std::pow(std::max(error, 1e-8), 2), 0.25);
@@ -151,7 +150,7 @@ void Radau::accept(double h, double error) {
   last_error_ = std::max(error, 1e-2);
   // The matrix changes with the step, and corrections become smaller by as much less.
   if (convergence_ > 0) ratio = std::min(ratio, std::sqrt(slowest_convergence / convergence_));
-  ratio = std::clamp(ratio, least_ratio, rejected_ ? 1.0 : most_ratio);
+  ratio = std::clamp(ratio, largest_cut, rejected_ ? 1.0 : most_ratio);
   const bool keeps = convergence_ < keeps_matrix;
   h_ = keeps && ratio >= 1 && ratio <= not_worth_it ? h : h * ratio;
   linearized_ = keeps;
@@ -162,7 +161,7 @@ void Radau::accept(double h, double error) {
 
 void Radau::reject(double h, double error) {
   ++motion_.equations().evaluator().counters.rejected;
-  h_ = first_ ? h / 10 : h * std::clamp(safety / std::pow(error, 0.25), least_ratio, 0.9);
+  h_ = first_ ? h / 10 : h * std::clamp(step_safety / std::pow(error, 0.25), largest_cut, 0.9);
   if (!std::isfinite(error)) h_ = h / 10;
   rejected_ = true;
   if (!fresh_) linearized_ = false;

@@ -4,16 +4,13 @@
 
 #include "catena/analysis/dynamics/implicit/implicit_step.hpp"
 #include "catena/analysis/dynamics/implicit/radau.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
 
-// The same of steps of one length: a tenth of a digit each.
-constexpr int most_of_fixed_step = 100;
 // Corrections that are foreseen to leave this many times what is allowed are not made.
 constexpr double hopeless = 10;
-// What is left of the stages' equations, as a part of the error that a step may have: it does not disturb the estimate.
-constexpr double left_part = 0.01;
 
 }  // namespace
 
@@ -66,9 +63,9 @@ bool Radau::prepare(double h) {
 }
 
 Radau::Newton Radau::solve_stages(double h) {
-  // A step that may not be shortened is solved for as long as corrections become smaller.
+  // A step that may not be shortened is solved for as long as corrections become smaller, by a tenth of a digit each.
   const bool fixed = options_.fixed_step > 0;
-  const int most = fixed ? most_of_fixed_step : most_corrections;
+  const int most = fixed ? 2 * thresholds::most_bisections : most_corrections;
   double before = 0, theta = 0;
   for (corrections_ = 1; corrections_ <= most; ++corrections_) {
     double change = 0;
@@ -124,7 +121,8 @@ bool Radau::correct(double h, double& change) {
     }
   }
   change = 0;
-  for (const std::vector<double>& part : residual_) change = std::max(change, size_of(part, h, left_part));
+  for (const std::vector<double>& part : residual_)
+    change = std::max(change, size_of(part, h, implicit_step::left_part));
   return std::isfinite(change);
 }
 

@@ -8,17 +8,6 @@
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
-namespace {
-
-// Of searches for places with the factors of the beginning: each takes a digit or more where a step is of use at all.
-constexpr int most_corrections = 50;
-// Of repetitions for velocities, which gain at least a factor of two each where a step is of use.
-constexpr int most_rounds = 60;
-// A rest of a step that is longer by this part is rounding of time.
-constexpr double rounding_of_time = 1e-9;
-
-}  // namespace
-
 Rattle::Rattle(Motion motion, double step, double horizon) : motion_(motion), step_(step) {
   for (std::vector<double>* y : {&y_, &y_before_, &y_new_, &slope_, &slope_before_}) y->assign(motion_.size(), 0.0);
   half_.assign(motion_.coordinates(), 0.0);
@@ -44,7 +33,8 @@ bool Rattle::advance(double limit) {
   evaluator.take_turns(motion_.q(std::span(y_)));
   evaluator.go_to_curve_places(curve_places_);
   const double next = from_ + static_cast<double>(steps_ + 1) * step_;
-  const bool lands = next >= limit - rounding_of_time * step_;
+  // A rest of a step that is longer by as little is rounding of time.
+  const bool lands = next >= limit - thresholds::same_instant * step_;
   t_new_ = lands ? limit : next;
   const double h = t_new_ - t_;
   culprit_ = -1;
@@ -72,18 +62,20 @@ bool Rattle::find_places(double h) {
   std::copy(y_.begin(), y_.end(), y_new_.begin());
   for (std::size_t c = 0; c < n; ++c) y_new_[c] += h * (y_[n + c] + h / 2 * slope_before_[n + c]);
   equations.evaluator().set_time(t_new_, Side::before);
-  position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), most_corrections);
+  // With the factors of the beginning: each correction takes a digit or more where a step is of use at all.
+  position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), thresholds::most_bisections);
   if (!(position_residual_ < RungeKutta::largest_residual)) return false;
   for (std::size_t c = 0; c < n; ++c) half_[c] = (y_new_[c] - y_[c]) / h;
   return true;
 }
 
-// The second line: v1 in the forces is repeated until it is the result.
+// The second line: v1 in the forces is repeated until it is the result. Each gains at least a factor of two where a
+// step is of use.
 bool Rattle::find_velocities(double h) {
   const std::size_t n = motion_.coordinates();
   const std::span<double> v = motion_.qd(std::span(y_new_));
   std::copy(half_.begin(), half_.end(), v.begin());
-  for (int k = 0; k < most_rounds; ++k) {
+  for (int k = 0; k < thresholds::most_bisections; ++k) {
     if (!motion_.derivative(t_new_, Side::before, y_new_, slope_)) return false;
     double change = 0, size = 0;
     std::vector<double>& last = y_before_;  // is overwritten at the end of the step

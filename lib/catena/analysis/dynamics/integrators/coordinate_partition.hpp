@@ -46,6 +46,9 @@ class CoordinatePartition {
   double position_residual() const { return position_residual_; }
 
  private:
+  // Pivots of dependent coordinates, as parts of the largest since the choice: errors of these are those of independent
+  // ones over that part. Below the first, a step that was made is the last with this choice; below the second, where
+  // they are fifty times as large, none is made.
   static constexpr double worse = 0.3, unusable = 0.02;
   void find_tangents(int freedoms);
   void pick_independent(int freedoms);

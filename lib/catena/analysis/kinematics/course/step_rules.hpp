@@ -9,6 +9,10 @@ namespace catena::step_rules {
 inline constexpr double largest_turn = 0.1;
 /// A correction may be this part of the one before: Newton's iteration then stays where it contracts.
 inline constexpr double largest_contraction = 0.25;
+/// With that an error of one length scale comes to 1e-12 in 20 iterations.
+inline constexpr int most_iterations = 25;
+/// A ratio of successive corrections above this asks for new factors.
+inline constexpr double poor_contraction = 0.1;
 /// No body may turn further in a step: a singular configuration in between could be missed.
 inline constexpr double longest_step = 0.5;
 /// A given configuration is taken as near to the assembled one if Newton's first correction is at most this large, and

@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/analysis/sensitivity/motion_crossing.hpp"
 #include "catena/analysis/sensitivity/phases/place_law.hpp"
@@ -34,10 +35,6 @@ namespace catena {
 // at once do so to this part: of bounces that accumulate those below rest_speed, 1e-4 of the speed, are left out, and
 // what comes to rest together does so to that part. What meets by chance misses by all of it.
 inline constexpr double same_place = 1e-4;
-// Of the length scale, for a parameter that is changed by its own size: derivatives that cancel out leave 1e-15.
-inline constexpr double rounding_of_derivatives = 1e-12;
-// Accelerations that differ by less than this part of their size are the same on both sides of an instant.
-inline constexpr double no_jump_of_slopes = 1e-9;
 
 class PhaseEquations {
  public:

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/sensitivity/phases/phase_equations.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// As in contact_loads.cpp: one step without joints, quadratic with them.
-constexpr int most_sizes_iterations = 30;
+// Of the sizes: a step of Newton's method that is their rounding.
 constexpr double settled_size = 1e-15;
 
 }  // namespace
@@ -93,7 +93,7 @@ bool PhaseEquations::solve_values(const Design& design, std::span<const Coupled>
     if (!(factors.determinant() > 0)) return false;
     const Eigen::VectorXd step = factors.solve(residual);
     if (step.lpNorm<Eigen::Infinity>() <= settled_size * sizes.lpNorm<Eigen::Infinity>()) break;
-    if (iteration == most_sizes_iterations) return false;
+    if (iteration == most_friction_iterations) return false;
     sizes -= step;
   }
   for (std::size_t l = 0; l < coupled.size(); ++l) {

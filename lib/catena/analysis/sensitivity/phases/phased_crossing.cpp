@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/phases/phased_derivatives.hpp"
 #include "catena/base/at.hpp"
 
@@ -119,7 +120,7 @@ void PhasedDerivatives::end_crossing(std::size_t k, const std::vector<double>& r
   }
   const std::span<const double> own = rates_of_group(rate, k);
   for (std::size_t p = 0; p < own.size(); ++p) {
-    const bool unseen = std::isnan(own[p]) && (jumps || change > no_jump_of_slopes * size);
+    const bool unseen = std::isnan(own[p]) && (jumps || change > thresholds::no_jump * size);
     if (unseen && lost_.empty())
       lost_ =
           fmt::format("the instant t = {:.9g} s, at which the motion goes on in another way, has no derivative", to_);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -131,7 +132,7 @@ void PhasedDerivatives::find_anchors(std::size_t k) {
 double PhasedDerivatives::rounding(std::size_t k, std::size_t p) const {
   const std::size_t number = k * at(parameters_at_once) + p;
   const double size = number < sizes_.size() && sizes_[number] != 0 ? std::abs(sizes_[number]) : 1;
-  return rounding_of_derivatives * length_scale_ / size;
+  return thresholds::solved * length_scale_ / size;
 }
 
 // A row that begins to hold must be met whatever the parameters are: else another motion begins there.

@@ -16,11 +16,6 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 // Rates of two conditions of one instant that differ by less than this part are one: they are good to 1e-8.
 constexpr double one_rate = thresholds::same_value;
-// Of its size, or of 1: a column is at the value of an event that comes together with another one, both found to
-// rounding.
-constexpr double is_at_value = 1e-12;
-// One that changes by less than this part in the stretch stays at its value, and has no event there.
-constexpr double stays_at_value = 1e-9;
 
 bool is_one(double a, double b) { return std::abs(a - b) <= one_rate * std::max(std::abs(a), std::abs(b)); }
 
@@ -80,11 +75,12 @@ std::optional<std::vector<double>> PhasedDerivatives::rate_of_event(const Motion
   if (!end) return {};
   double value = 0;
   event.column.evaluate(*end, {&value, 1});
-  if (!is_first && !(std::abs(value - event.value) <= is_at_value * std::max(std::abs(event.value), 1.0))) return {};
+  if (!is_first && !(std::abs(value - event.value) <= thresholds::solved * std::max(std::abs(event.value), 1.0)))
+    return {};
   const std::optional<double> by_time = rate_at_end(stretch, event.column);
   if (!by_time) return {};
   const double change = std::abs(*by_time) * (to_ - from_);
-  if (!is_first && change <= stays_at_value * std::max(std::abs(event.value), 1.0)) return {};
+  if (!is_first && change <= thresholds::no_jump * std::max(std::abs(event.value), 1.0)) return {};
   const std::optional<Snapshot> again = stretch.at(to_);
   if (!again || !find(*again)) return {};
   differentiate(event.column, *again, rate);

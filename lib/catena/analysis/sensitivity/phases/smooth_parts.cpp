@@ -9,6 +9,7 @@
 namespace catena {
 namespace {
 
+// A depth that doubles within a part is zero as far from it as the part is long: polynomials follow its powers there.
 constexpr double most_ratio = 2;
 // (1/2)^30 = 1e-9.
 constexpr double halvings_by_exponent = 30;

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/assembly/design/force_slopes.hpp"
 #include "catena/base/at.hpp"
@@ -76,7 +77,7 @@ bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<cons
       change = std::max(change, std::abs(next[c] / largest - w[c]));
       w[c] = next[c] / largest;
     }
-    if (change <= inverse_iteration::settled) return true;
+    if (change <= thresholds::solved) return true;
   }
   return fail("the vector on the left of its stiffness did not settle");
 }
@@ -92,7 +93,7 @@ bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::spa
     return fail("the vectors of the frequency in which two meet were not found");
   std::vector<double> next(v.size()), multipliers(nu.size());
   double changed = 1;
-  for (int round = 0; round < inverse_iteration::most_rounds && changed > inverse_iteration::settled; ++round) {
+  for (int round = 0; round < inverse_iteration::most_rounds && changed > thresholds::solved; ++round) {
     for (const bool of_left : {true, false}) {
       const std::span<double> from = of_left ? v : w, to = of_left ? w : v;
       for (std::size_t c = 0; c < next.size(); ++c) next[c] = weight[c] * from[c];
@@ -109,7 +110,7 @@ bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::spa
       for (std::size_t r = 0; of_left && r < nu.size(); ++r) nu[r] = multipliers[r] / largest;
     }
   }
-  return changed <= inverse_iteration::settled || fail("the vectors of the frequency in which two meet did not settle");
+  return changed <= thresholds::solved || fail("the vectors of the frequency in which two meet did not settle");
 }
 
 // Forces that only C++ can make show their slopes in no numbers that move with the parameters.

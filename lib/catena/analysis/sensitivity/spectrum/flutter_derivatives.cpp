@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/base/at.hpp"
 
@@ -19,9 +20,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using ComplexMatrix = Eigen::SparseMatrix<Complex>;
-
-// Of |w| |M v|, both as far as they go: below it the pair is one omega2 with a single vector.
-constexpr double one_vector = 1e-9;
 
 /// K - z M with Phi_q over columns and rows of the plan, or its transpose; `mass` over both.
 ComplexMatrix saddle_of(const Evaluator& evaluator, std::span<const double> jacobian, std::span<const double> lambda,
@@ -65,7 +63,7 @@ bool find_vector(const ComplexMatrix& matrix, const Eigen::VectorXd& mass, int c
     next /= Complex(next(largest));
     const double change = (next - x).head(columns).cwiseAbs().maxCoeff();
     x = std::move(next);
-    if (change <= inverse_iteration::settled) return true;
+    if (change <= thresholds::solved) return true;
   }
   return false;
 }
@@ -98,7 +96,7 @@ std::optional<std::vector<Complex>> SpectrumDerivatives::gradient_of_pair(Comple
   }
   const Eigen::VectorXcd weighed = mass.cast<Complex>().cwiseProduct(both[0]);
   const Complex scale = (both[1].transpose() * weighed)(0);
-  if (!(std::abs(scale) > one_vector * both[1].head(columns).norm() * weighed.norm())) {
+  if (!(std::abs(scale) > thresholds::no_overlap * both[1].head(columns).norm() * weighed.norm())) {
     fail("the pair begins to flutter here, where it has one vector and no derivative");
     return {};
   }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/base/at.hpp"
 
@@ -11,10 +12,6 @@ namespace {
 // |w^T F_P| below this part of |w| |F_P|: the load does no work on the mode, as at branch points of symmetric
 // structures.
 constexpr double no_work = 1e-7;
-// Inverse iterations for the null vector: each gains the ratio of the smallest eigenvalue to the next.
-constexpr int iterations = 4;
-// Of the largest stiffness, on the diagonal.
-constexpr double shift = 1e-13;
 
 /// F_p at the place, parameter after parameter: derivatives of [Phi_q^T lambda - Q, Phi] at fixed q and lambda.
 class ResidualDerivatives final : public StateDerivatives {
@@ -73,15 +70,15 @@ std::optional<std::vector<double>> limit_load_gradient(const Evaluator& evaluato
   }
   system.tangent().add_stiffness(here, place.lambda);
   const double largest = system.tangent().largest_stiffness();
-  // At the fold itself nothing could be solved; the shift turns the vector by as little.
-  for (int c = 0; c < 3 * plan.moving; ++c) system.add_diagonal(c, shift * largest);
+  // At the fold itself nothing could be solved; a shift of rounding turns the vector by as little.
+  for (int c = 0; c < 3 * plan.moving; ++c) system.add_diagonal(c, thresholds::carried_rounding * largest);
   if (!system.factorize()) {
     why = "the equations of the equilibrium cannot be solved";
     return {};
   }
   std::vector<double> v(at(plan.coordinates())), mu(at(plan.rows));
   for (std::size_t c = 0; c < v.size(); ++c) v[c] = 1 + 0.1 * static_cast<double>(c % 7);
-  for (int n = 0; n < iterations; ++n) {
+  for (int n = 0; n < thresholds::null_vector_steps; ++n) {
     if (!system.solve(v, mu)) {
       why = "the singular mode could not be found";
       return {};

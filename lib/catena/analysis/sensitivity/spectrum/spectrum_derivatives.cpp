@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
 #include "catena/base/at.hpp"
 
@@ -11,8 +12,6 @@ namespace {
 
 // Forces are in balance if what is left of them is at most this part: what modes take for balance, see modes.cpp.
 constexpr double balanced = 1e-6;
-// Forces that cancel out leave rounding: what this part of the length scale, or of 1 rad, makes of the stiffness.
-constexpr double rounding_of_places = 1e-13;
 
 /// Fills the metric (1, 1, radius^2) and Phi_q, and factors.
 bool factor_metric(Evaluator& evaluator, SaddleSystem& system, std::span<double> jacobian) {
@@ -72,8 +71,8 @@ bool SpectrumDerivatives::is_in_balance() {
   for (int c = 0; c < plan().columns; ++c) {
     const int coordinate = plan().coordinate[at(c)];
     const double load = loads[at(coordinate)], rest = std::abs(load - held[at(c)]);
-    const double none =
-        rounding_of_places * stiffness[at(coordinate)] * (coordinate % 3 == 2 ? 1 : evaluator().length_scale());
+    const double none = thresholds::carried_rounding * stiffness[at(coordinate)] *
+                        (coordinate % 3 == 2 ? 1 : evaluator().length_scale());
     size = std::max(size, std::abs(load));
     if (rest > none) left = std::max(left, rest);
   }

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/static_derivatives.hpp"
 
 namespace catena {
@@ -40,10 +41,9 @@ std::optional<std::vector<double>> balancing_multipliers(Evaluator& evaluator, d
 namespace inverse_iteration {
 /// Of vectors of an omega2: the matrix is factored this part of it beside it, where it is regular, and every round
 /// leaves of other omega2, at least 1e-6 away, a tenth of what a vector has of them; of a load this part of the largest
-/// stiffness. They are settled where they change by no more than the last.
+/// stiffness. They are thresholds::solved where they change by no more than the last.
 inline constexpr double beside = 1e-7;
 inline constexpr int most_rounds = 20;
-inline constexpr double settled = 1e-12;
 }  // namespace inverse_iteration
 
 class SpectrumDerivatives final : public StateDerivatives {

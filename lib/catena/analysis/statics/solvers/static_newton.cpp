@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/balance/descent_rules.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// Changes, in length scales or rad, below which one more correction with the same factors reaches rounding.
-constexpr double polished_change = 1e-4;
+// Of corrections with the same factors at the end.
 constexpr int polishing_steps = 4;
 // Part of the residual that a correction may leave, and the multiple of rounding that still counts as rounding.
 constexpr double polishing_part = 1e-2, multiple_of_rounding = 10;
@@ -180,7 +180,7 @@ double NewtonSearch::move(const StaticStep& step) {
 
 // Along motions that nothing resists a step from a balanced place consists of rounding: it is taken back.
 bool NewtonSearch::returns_from_rounding(double change, double residual_before) {
-  if (!balanced_ || !(change > polished_change) || outcome_.residual <= thresholds::least_gain * residual_before)
+  if (!balanced_ || !(change > descent::last_step) || outcome_.residual <= thresholds::least_gain * residual_before)
     return false;
   before_.take_back(system_, q_, lambda_);
   outcome_.residual = residual_before;
@@ -193,7 +193,7 @@ bool NewtonSearch::is_solved(double change) {
   const auto is_small = [&] { return is_balanced(outcome_.step <= last_change ? system_.rounding_force() : 0); };
   balanced_ = is_balanced(0);
   // One step ends a linear problem, whatever its length.
-  if (change > polished_change && !(linear_ && outcome_.exact && is_small())) return false;
+  if (change > descent::last_step && !(linear_ && outcome_.exact && is_small())) return false;
   polish(system_, q_, lambda_, outcome_);
   force_ = system_.force_scale(lambda_);
   return is_small() || change <= last_change;

@@ -13,8 +13,6 @@
 namespace catena {
 namespace {
 
-// Of a step: rad.
-constexpr double settling_turn = 0.5;
 // Of a step, in extents of the scene.
 constexpr double largest_travel = 0.5;
 // Growth of the residual allowed in an accepted step, and the change of the damping from step to step.
@@ -114,9 +112,9 @@ bool Settling::stiffen() {
 double Settling::move() {
   const std::span<const double> change(x_.data(), residual_.size());
   const auto [turn, travel] = travel_of(system_.plan(), change);
-  factor_ = std::min({1.0, settling_turn / turn, largest_travel * extent_ / travel});
+  factor_ = std::min({1.0, thresholds::largest_turn / turn, largest_travel * extent_ / travel});
   if (!std::isfinite(turn + travel)) return size_;
-  system_.advance(q_, change, factor_, settling_turn);
+  system_.advance(q_, change, factor_, thresholds::largest_turn);
   for (std::size_t r = 0; r < lambda_.size(); ++r) lambda_[r] += factor_ * x_[change.size() + r];
   system_.move_to(q_);
   outcome_.step = system_.change_norm(change);
