@@ -1,7 +1,6 @@
 #include "catena/columns/column_names.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "catena/columns/element_columns.hpp"
 #include "catena/columns/own_columns.hpp"
@@ -9,32 +8,6 @@
 
 namespace catena {
 namespace {
-
-struct Simple {
-  std::string_view name;
-  UnitKind unit;
-  ColumnKind kind;
-};
-
-constexpr std::array body_columns = {Simple{"x", UnitKind::length, ColumnKind::x},
-                                     Simple{"y", UnitKind::length, ColumnKind::y},
-                                     Simple{"angle", UnitKind::angle, ColumnKind::angle},
-                                     Simple{"vx", UnitKind::velocity, ColumnKind::vx},
-                                     Simple{"vy", UnitKind::velocity, ColumnKind::vy},
-                                     Simple{"omega", UnitKind::angular_velocity, ColumnKind::omega},
-                                     Simple{"ax", UnitKind::acceleration, ColumnKind::ax},
-                                     Simple{"ay", UnitKind::acceleration, ColumnKind::ay},
-                                     Simple{"alpha", UnitKind::angular_acceleration, ColumnKind::alpha}};
-
-constexpr std::array energy_columns = {Simple{"kinetic", UnitKind::energy, ColumnKind::kinetic},
-                                       Simple{"potential", UnitKind::energy, ColumnKind::potential},
-                                       Simple{"total", UnitKind::energy, ColumnKind::total},
-                                       Simple{"dissipated", UnitKind::energy, ColumnKind::dissipated},
-                                       Simple{"balance", UnitKind::energy, ColumnKind::balance}};
-
-constexpr std::array momentum_columns = {Simple{"x", UnitKind::momentum, ColumnKind::momentum_x},
-                                         Simple{"y", UnitKind::momentum, ColumnKind::momentum_y},
-                                         Simple{"angular", UnitKind::angular_momentum, ColumnKind::angular_momentum}};
 
 constexpr bool turns(ColumnKind kind) {
   return kind == ColumnKind::angle || kind == ColumnKind::omega || kind == ColumnKind::alpha;
@@ -89,8 +62,8 @@ class Lookup {
     }
     // In radians if the plan turns out to have rows of angles alone; see ColumnSet::resolve.
     if (name_ == "residual") return take("residual", UnitKind::length, {ColumnKind::residual});
-    if (head_ == "energy") return group(energy_columns);
-    if (head_ == "momentum") return group(momentum_columns);
+    if (head_ == "energy") return group(energy_kinds);
+    if (head_ == "momentum") return group(momentum_kinds);
     if (const int body = model_.find_body(head_); body >= ground) return body_name(body);
     if (const int element = model_.find_element(head_); element >= 0) return element_name(element);
     if (std::optional<NamedColumn> found = find_switch(model_, name_)) {
@@ -106,17 +79,16 @@ class Lookup {
     return {};
   }
 
-  template <class Table>
-  std::optional<UnknownColumn> group(const Table& table) {
+  std::optional<UnknownColumn> group(std::span<const NamedKind> table) {
     bool found = false;
-    for (const Simple& column : table) {
+    for (const NamedKind& column : table) {
       if (dotted_ && rest_ != column.name) continue;
       take(join(head_, column.name), column.unit, {column.kind});
       found = true;
     }
     if (found) return {};
     UnknownColumn unknown{std::string(name_), "there is no " + quoted(rest_) + " of " + std::string(head_), {}};
-    for (const Simple& column : table) unknown.candidates.push_back(join(head_, column.name));
+    for (const NamedKind& column : table) unknown.candidates.push_back(join(head_, column.name));
     return unknown;
   }
 
@@ -129,7 +101,7 @@ class Lookup {
     const bool all = point < 0 ? !dotted_ : dot == std::string_view::npos;
     const std::string_view owner = point < 0 ? head_ : name_.substr(0, head_.size() + 1 + first.size());
     bool found = false;
-    for (const Simple& simple : body_columns) {
+    for (const NamedKind& simple : body_kinds) {
       if (point >= 0 && turns(simple.kind)) continue;
       if (!all && column != simple.name) continue;
       take(join(owner, simple.name), simple.unit, {simple.kind, body, point});
@@ -147,7 +119,7 @@ class Lookup {
       unknown.message = (body < 0 ? "the ground" : "body " + quoted(owner)) + " has no point or column " +
                         quoted(column.substr(0, column.find('.')));
     }
-    for (const Simple& simple : body_columns) {
+    for (const NamedKind& simple : body_kinds) {
       if (point < 0 || !turns(simple.kind)) unknown.candidates.push_back(join(owner, simple.name));
     }
     if (point >= 0) return unknown;
@@ -253,7 +225,7 @@ std::vector<NamedColumn> default_columns(const Model& model) {
   columns.reserve(3 * model.bodies.size());
   for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Simple& simple = body_columns[k];
+      const NamedKind& simple = body_kinds[k];
       columns.push_back({{join(model.body_name(body), simple.name), simple.unit}, {simple.kind, body, -1}});
     }
   }

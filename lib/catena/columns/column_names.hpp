@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "catena/base/row_sink.hpp"
-#include "catena/model/column.hpp"
+#include "catena/model/column_rules.hpp"
 #include "catena/model/model.hpp"
 
 namespace catena {
@@ -41,12 +41,5 @@ std::vector<int> elements_with_reactions(const Model& model, std::span<const std
 
 /// The default columns: x, y and angle of every body.
 std::vector<NamedColumn> default_columns(const Model& model);
-
-/// Whether the column shows multipliers, or values derived from them.
-constexpr bool is_reaction(ColumnKind kind) {
-  return (kind >= ColumnKind::reaction_x && kind <= ColumnKind::push) ||
-         (kind >= ColumnKind::load && kind <= ColumnKind::work) || kind == ColumnKind::friction ||
-         kind == ColumnKind::slip || kind == ColumnKind::far_pull;
-}
 
 }  // namespace catena

@@ -15,45 +15,10 @@ namespace {
 enum Lack { no_velocity, no_acceleration, no_multipliers, no_work, no_mass, eliminated, lacks };
 
 Needs needs_of(ColumnKind kind) {
-  Needs needs;
-  switch (kind) {
-    case ColumnKind::ax:
-    case ColumnKind::ay:
-    case ColumnKind::alpha:
-      needs.acceleration = true;
-      [[fallthrough]];  // gamma and the centripetal part
-    case ColumnKind::vx:
-    case ColumnKind::vy:
-    case ColumnKind::omega:
-    case ColumnKind::rate:
-    case ColumnKind::joint_omega:
-    case ColumnKind::slide_rate:
-    case ColumnKind::length_rate:
-    case ColumnKind::supplied_power:
-    case ColumnKind::kinetic:
-    case ColumnKind::total:
-    case ColumnKind::momentum_x:
-    case ColumnKind::momentum_y:
-    case ColumnKind::angular_momentum:
-      needs.velocity = true;
-      break;
-    case ColumnKind::balance:
-      needs.velocity = needs.work = true;
-      break;
-    case ColumnKind::dissipated:
-    case ColumnKind::work:
-      needs.work = true;
-      break;
-    default:
-      needs.multipliers = is_reaction(kind);
-  }
-  return needs;
-}
-
-/// Columns that are valid at rest too, but include damping, and laws of velocities, where there are velocities.
-bool uses_velocity(ColumnKind kind) {
-  return kind == ColumnKind::tension || kind == ColumnKind::spring_torque ||
-         (kind >= ColumnKind::exerted_x && kind <= ColumnKind::applied_y);
+  return {.velocity = has_need(kind, ColumnNeed::velocities),
+          .acceleration = has_need(kind, ColumnNeed::accelerations),
+          .multipliers = has_need(kind, ColumnNeed::multipliers),
+          .work = has_need(kind, ColumnNeed::sums)};
 }
 
 /// Whether an elastic rope has friction on pulleys: its tension at an end is found with the accelerations.
@@ -65,9 +30,7 @@ bool rubs(const Model& model, int element) {
 }
 
 bool needs_mass(ColumnKind kind, const Model& model) {
-  if (kind == ColumnKind::potential) return model.gravity != Vec2<double>{};
-  return kind == ColumnKind::kinetic || kind == ColumnKind::total || kind == ColumnKind::balance ||
-         (kind >= ColumnKind::momentum_x && kind <= ColumnKind::angular_momentum);
+  return has_need(kind, ColumnNeed::masses) || (has_need(kind, ColumnNeed::weight) && model.gravity != Vec2<double>{});
 }
 
 /// Columns that were left out for one reason: the first one's name, and how many.
@@ -121,11 +84,11 @@ class Resolver {
     return lack;
   }
   std::optional<Lack> lack_of_read(const Column& column) const {
-    const Needs needs = needs_of(column.kind);
-    if (needs.acceleration && !sources_.acceleration) return no_acceleration;
-    if (needs.velocity && !sources_.velocity) return no_velocity;
-    if (needs.multipliers && !sources_.multipliers) return no_multipliers;
-    if (needs.work && !sources_.work) return no_work;
+    const Needs wanted = needs_of(column.kind);
+    if (wanted.acceleration && !sources_.acceleration) return no_acceleration;
+    if (wanted.velocity && !sources_.velocity) return no_velocity;
+    if (wanted.multipliers && !sources_.multipliers) return no_multipliers;
+    if (wanted.work && !sources_.work) return no_work;
     if (needs_mass(column.kind, model_) && without_mass_ >= 0) return no_mass;
     const bool has_rows = column.kind != ColumnKind::far_pull ||
                           model_.elements[static_cast<std::size_t>(column.index)].kind != ElementKind::force;
@@ -144,7 +107,7 @@ class Resolver {
   }
 
   Column in_plan(Column column) const {
-    if (column.kind >= ColumnKind::x && column.kind <= ColumnKind::alpha)
+    if (is_body_column(column.kind))
       column.index = column.index < 0 ? plan_.bodies : plan_.plan_body[static_cast<std::size_t>(column.index)];
     return column;
   }
@@ -213,9 +176,8 @@ ColumnSet ColumnSet::resolve(const Model& model, const Plan& plan, std::span<con
     resolver.read(column.column);
     if (!resolver.gives(column)) continue;
     visit_read_columns(resolver.own_inputs(), column.column, [&](const Column& read) {
-      const Needs needs = needs_of(read.kind);
-      set.needs_ |= needs;
-      set.needs_.velocity |= sources.velocity && uses_velocity(read.kind);
+      set.needs_ |= needs_of(read.kind);
+      set.needs_.velocity |= sources.velocity && has_need(read.kind, ColumnNeed::damping);
       set.needs_.multipliers |= sources.multipliers && read.kind == ColumnKind::tension && rubs(model, read.index);
     });
     set.columns_.push_back(resolver.in_plan(column.column));

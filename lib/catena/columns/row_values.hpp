@@ -1,4 +1,5 @@
-// The value of every kind of column, for any scalar: one switch serves plain numbers and derivatives.
+// The value of every kind of column, for any scalar: what the list of kinds (model/column_kinds.hpp) says of it serves
+// plain numbers and derivatives.
 //
 // A State is what is known of a mechanism at one instant: SnapshotState in plain numbers, DesignState with derivatives
 // by design parameters. It gives, besides what snapshot_state.hpp says,
@@ -37,113 +38,15 @@ class RowValues {
 
   S value(const Column& column) {
     switch (column.kind) {
-      case ColumnKind::time:
-        return s_.time();
-      case ColumnKind::residual:
-        return s_.residual();
-      case ColumnKind::own:
-        return column.detail < 0 ? own(column.index) : switch_of(column);
-      case ColumnKind::x:
-        return position(column).x;
-      case ColumnKind::y:
-        return position(column).y;
-      case ColumnKind::angle:
-        return frame(column).phi;
-      case ColumnKind::vx:
-        return velocity(column).x;
-      case ColumnKind::vy:
-        return velocity(column).y;
-      case ColumnKind::omega:
-        return s_.twist(column.index).omega;
-      case ColumnKind::ax:
-        return acceleration(column).x;
-      case ColumnKind::ay:
-        return acceleration(column).y;
-      case ColumnKind::alpha:
-        return s_.acceleration(column.index).omega;
-      case ColumnKind::reaction_x:
-        return force(column).x;
-      case ColumnKind::reaction_y:
-        return force(column).y;
-      case ColumnKind::reaction_torque:
-        return column.detail == on_i ? reactions(column).on_i.torque : reactions(column).on_j.torque;
-      case ColumnKind::multiplier:
-        return reactions(column).multiplier[column.detail];
-      case ColumnKind::push:
-        return push(column);
-      case ColumnKind::friction:
-        if (const auto* load = s_.contact(column.index)) return S(load->friction);
-        return S(0.0);
-      case ColumnKind::slip:
-        return slip_now(s_, column.index);
-      case ColumnKind::gap:
-        return s_.measured(column.index).f;
-      case ColumnKind::way:
-        return way(column.index);
-      case ColumnKind::far_pull:
-        return far_pull(column);
-      case ColumnKind::slack:
-        return s_.spring_loads(column.index).slack;
-      case ColumnKind::value:
-        return s_.measured(column.index).f;
-      case ColumnKind::rate:
-        return s_.measured(column.index).d;
-      case ColumnKind::joint_angle:
-        return joint(column).angle.f;
-      case ColumnKind::joint_omega:
-        return joint(column).angle.d;
-      case ColumnKind::slide:
-        return joint(column).slide.f;
-      case ColumnKind::slide_rate:
-        return joint(column).slide.d;
-      case ColumnKind::load:
-        return load(column);
-      case ColumnKind::power:
-        return load(column) * s_.prescribed(column.index).d;
-      case ColumnKind::work:
-        return s_.driver_work(column.index);
-      case ColumnKind::length:
-        return joint(column).length.f;
-      case ColumnKind::length_rate:
-        return joint(column).length.d;
-      case ColumnKind::turn:
-        return joint(column).angle.f;
-      case ColumnKind::tension:
-        return tension(column.index);
-      case ColumnKind::spring_torque:
-        return s_.spring_loads(column.index).torque;
-      case ColumnKind::offset_x:
-        return s_.spring_loads(column.index).offset.x;
-      case ColumnKind::offset_y:
-        return s_.spring_loads(column.index).offset.y;
-      case ColumnKind::exerted_x:
-        return exerted(column).x;
-      case ColumnKind::exerted_y:
-        return exerted(column).y;
-      case ColumnKind::exerted_torque:
-        return s_.spring_loads(column.index).torque_on_j;
-      case ColumnKind::applied_x:
-        return s_.spring_loads(column.index).force_on_i.x;
-      case ColumnKind::applied_y:
-        return s_.spring_loads(column.index).force_on_i.y;
-      case ColumnKind::supplied_power:
-        return s_.spring_loads(column.index).power;
-      case ColumnKind::kinetic:
-        return kinetic();
-      case ColumnKind::potential:
-        return potential();
-      case ColumnKind::total:
-        return total();
-      case ColumnKind::dissipated:
-        return s_.dissipated();
-      case ColumnKind::balance:
-        return total() - s_.initial_energy() - s_.work() + s_.dissipated();
-      case ColumnKind::momentum_x:
-        return sums().linear.x;
-      case ColumnKind::momentum_y:
-        return sums().linear.y;
-      case ColumnKind::angular_momentum:
-        return sums().angular;
+#define CATENA_NAMED(kind, name, unit, need, value) \
+  case ColumnKind::kind:                            \
+    return value;
+#define CATENA_OF_ELEMENT(kind, need, value) \
+  case ColumnKind::kind:                     \
+    return value;
+      CATENA_COLUMN_KINDS(CATENA_NAMED, CATENA_OF_ELEMENT)
+#undef CATENA_NAMED
+#undef CATENA_OF_ELEMENT
     }
     return S(0.0);
   }
@@ -205,6 +108,16 @@ class RowValues {
     if (column.detail == on_i) return r.on_i.force;
     if (column.detail == on_j) return r.on_j.force;
     return {dot(r.joint_x, r.on_j.force), cross(r.joint_x, r.on_j.force)};
+  }
+
+  S torque(const Column& column) {
+    const BasicElementReactions<S>& r = reactions(column);
+    return column.detail == on_i ? r.on_i.torque : r.on_j.torque;
+  }
+  /// Of a contact, along the curve's direction, or in a joint.
+  S friction(const Column& column) const {
+    const auto* load = s_.contact(column.index);
+    return load ? S(load->friction) : S(0.0);
   }
 
   Vec2<S> exerted(const Column& column) const {
@@ -289,7 +202,7 @@ class RowValues {
     return *kinetic_;
   }
   S total() { return kinetic() + potential(); }
-  const BasicMomentum<S>& sums() {
+  const BasicMomentum<S>& momenta() {
     if (!momentum_) momentum_ = momentum_of(s_);
     return *momentum_;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "catena/model/column_rules.hpp"
 #include "catena/scene/json/diagnostic.hpp"
 #include "catena/scene/numbers/expression.hpp"
 
@@ -10,7 +11,6 @@ namespace catena {
 namespace {
 
 constexpr std::array<std::string_view, 5> taken{"ground", "t", "energy", "momentum", "residual"};
-constexpr std::array<std::string_view, 9> body_columns{"x", "y", "angle", "vx", "vy", "omega", "ax", "ay", "alpha"};
 
 std::string character_problem(std::string_view name) {
   if (name.empty()) return "a name may not be empty";
@@ -40,7 +40,7 @@ std::string element_name_problem(std::string_view name) {
 }
 
 std::string point_name_problem(std::string_view name) {
-  if (contains(body_columns, name)) {
+  if (std::any_of(body_kinds.begin(), body_kinds.end(), [&](const NamedKind& kind) { return kind.name == name; })) {
     return "a point may not be called " + in_quotes(name) + ": that is a column of every body";
   }
   return character_problem(name);
