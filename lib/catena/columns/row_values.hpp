@@ -75,6 +75,17 @@ class RowValues {
     return notes.difference;
   }
 
+  /// The elongation of a spring past an end of its curve, 0 the first one.
+  S past_end_of_curve(const Column& column) {
+    const S length = joint(column).length.f;
+    for (const auto& spring : std::get<std::vector<ElementEntry<SpringDamper<S>, S>>>(s_.model().forces)) {
+      if (spring.id != column.index) continue;
+      const CurveUse ends = spring.element.curve.use_at(0);
+      return length - spring.element.length - S(column.detail == 0 ? ends.first : ends.last);
+    }
+    return length;
+  }
+
   /// The point's place in the centroidal frame: a named one, or the origin of the author's frame.
   Vec2<S> local(const Column& column) const {
     const auto& model = s_.model();

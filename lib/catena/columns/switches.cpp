@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "catena/base/taylor.hpp"
 #include "catena/columns/own_columns.hpp"
 #include "catena/elements/all.hpp"
 
@@ -50,11 +51,37 @@ int find_formula(const Model& model, std::string_view name) {
   return law >= 0 && law < count ? static_cast<int>(model.own_columns.size()) + law : -1;
 }
 
+using Spring = SpringDamper<double>;
+
+/// Whether the force keeps its value beyond an end of the curve, 0 the first one, where it has another slope before it.
+bool holds_beyond(const Spring& spring, int end) {
+  if (!spring.curve || spring.curve.ends()) return false;
+  const CurveUse ends = spring.curve.use_at(0);
+  const double size = ends.last - ends.first;
+  return spring.curve.force(Taylor<double>(end == 0 ? ends.first - size : ends.last + size, 1.0, 0.0)).d == 0;
+}
+
+std::string end_of_curve(const Model& model, int element, int end) {
+  return model.element_name(element) + std::string(switch_mark) + std::to_string(end);
+}
+
+/// "SPRING switch K".
+std::optional<NamedColumn> find_end_of_curve(const Model& model, std::string_view name) {
+  for (const auto& spring : std::get<std::vector<ElementEntry<Spring, double>>>(model.forces)) {
+    for (const int end : {0, 1}) {
+      if (holds_beyond(spring.element, end) && name == end_of_curve(model, spring.id, end))
+        return NamedColumn{{std::string(name), UnitKind::length, {}}, {ColumnKind::length, spring.id, end}};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<NamedColumn> find_switch(const Model& model, std::string_view name) {
   const std::size_t end = name.rfind(switch_mark);
   if (end == std::string_view::npos) return {};
+  if (std::optional<NamedColumn> of_spring = find_end_of_curve(model, name)) return of_spring;
   const int formula = find_formula(model, name.substr(0, end));
   const std::string_view digits = name.substr(end + switch_mark.size());
   int number = -1;
@@ -80,6 +107,12 @@ std::vector<std::string> switches_of_loads(const Model& model, const std::string
     add_gap(cable.id);
   for (const auto& span : std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model.forces)) {
     if (span.element.pieces > 0) add_gap(span.id);
+  }
+  for (const auto& spring : std::get<std::vector<ElementEntry<Spring, double>>>(model.forces)) {
+    if (!multipliers && !shows(model, name, model.element_name(spring.id) + ".")) continue;
+    for (const int end : {0, 1}) {
+      if (holds_beyond(spring.element, end)) names.push_back(end_of_curve(model, spring.id, end));
+    }
   }
   for (std::size_t law = 0; law < model.laws.size(); ++law) {
     if (!multipliers && !shows(model, name, model.element_name(model.laws[law].element) + ".")) continue;

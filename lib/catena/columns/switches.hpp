@@ -6,8 +6,9 @@
 // switch K", K from 0 in the order of evaluation: it has values and derivatives wherever NAME has. A formula is
 // evaluated with a scalar that takes down what its comparisons were made between; nothing else is looked at, and
 // formulas without switches are not touched. Derivatives of a column are those of one branch at s = 0. What shows loads
-// switches too where an elastic cable or rope that acts as a force becomes taut, s its gap, and by what laws of state
-// compare ("law L switch K"). Source: A. Griewank, A. Walther, Evaluating Derivatives (2008), section 14.1.
+// switches too where an elastic cable or rope that acts as a force becomes taut, s its gap, by what laws of state
+// compare ("law L switch K"), and at the ends of springs' curves that hold, s = l - l0 - e ("SPRING switch K", K 0 at
+// the first end, 1 at the last). Source: A. Griewank, A. Walther, Evaluating Derivatives (2008), section 14.1.
 #pragma once
 
 #include <cmath>
@@ -105,8 +106,9 @@ std::optional<NamedColumn> find_switch(const Model& model, std::string_view name
 /// The names of all switches of a column and of the own columns that it is made of; none of any other name.
 std::vector<std::string> switches_of(const Model& model, const std::string& name);
 
-/// By what the loads that a column shows switch: gaps of elastic cables and ropes that act as forces, and the
-/// comparisons that laws of state make; `multipliers`: the column needs those of the constraints, and so all loads.
+/// By what the loads that a column shows switch: gaps of elastic cables and ropes that act as forces, ends of curves
+/// that springs hold, and the comparisons that laws of state make; `multipliers`: the column needs those of the
+/// constraints, and so all loads.
 std::vector<std::string> switches_of_loads(const Model& model, const std::string& name, bool multipliers);
 
 }  // namespace catena

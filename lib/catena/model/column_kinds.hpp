@@ -48,7 +48,8 @@
   OF_ELEMENT(power, multipliers, load(column) * s_.prescribed(column.index).d) /* load x dc/dt */                 \
   OF_ELEMENT(work, summed_reaction, s_.driver_work(column.index))              /* integral of power */            \
   /* index = force element. */                                                                                    \
-  OF_ELEMENT(length, nothing, joint(column).length.f) /* |r_Pj - r_Pi| */                                         \
+  /* |r_Pj - r_Pi|; with a detail: past the first end of the curve of a spring, or the last one. */               \
+  OF_ELEMENT(length, nothing, column.detail < 0 ? joint(column).length.f : past_end_of_curve(column))             \
   OF_ELEMENT(length_rate, velocities, joint(column).length.d)                                                     \
   OF_ELEMENT(tension, damping, tension(column.index))                      /* pulls P_i, P_j together */          \
   OF_ELEMENT(turn, nothing, joint(column).angle.f)                         /* phi_j - phi_i */                    \

@@ -1,5 +1,5 @@
-// Gradients of integrals over loads that bend where a cable becomes taut, a law of state takes another branch, or a
-// table is held beyond its end: their derivatives jump there.
+// Gradients of integrals over loads that bend where a cable becomes taut, a law of state takes another branch, or
+// a table or a spring's curve is held beyond its end: their derivatives jump there.
 //
 // References of the slider-crank: its loads in closed form, integrated by Gauss's rule of 60 points between all kinks,
 // differences of fourth order in the parameters.
@@ -49,6 +49,21 @@ TEST(KinkedLoads, WorkOfADriverAgainstACableOrTheSameAsALaw) {
         for (std::size_t p = 0; p < 4; ++p) EXPECT_NEAR(gradient(run, "I", p), work[p], 2e-7) << p;
         EXPECT_NEAR(gradient(run, "rms", 2), 3.50522356, 1e-8);
       }
+    }
+  }
+}
+
+TEST(KinkedLoads, ASpringWhoseCurveIsHeldBeyondItsEnds) {
+  const std::string spring = R"({"type": "spring_damper", "name": "s", "i": ["ground", [0.7, 0.1]], "j": "pist",
+      "length": "L", "curve": {"points": [[-0.02, -10], [0.1, 80]], "beyond": "hold"}})";
+  constexpr std::array mean = {-60.988829020, -338.838475201, -344.878884473};  // by r, l, L
+  for (const std::string analysis : {"inverse_dynamics", "dynamics"}) {
+    for (const std::string mode : {"forward", "adjoint"}) {
+      SCOPED_TRACE(analysis + mode);
+      const TextRun run =
+          gradients_of("0.3", spring, R"(["r", "l", "L"])", analysis, mode, R"("F": {"mean": "s.force"})");
+      ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+      for (int p = 0; p < 3; ++p) EXPECT_NEAR(gradient(run, "F", p), mean[static_cast<std::size_t>(p)], 1e-8) << p;
     }
   }
 }
