@@ -102,6 +102,32 @@ TEST(FrequencyGradients, AboutAnEquilibriumAreVerifiedWithIt) {
   EXPECT_LT(deviation, 1e-6);
 }
 
+// What bends within a thousandth of the parameter: d exp(3000 (L - 1)) = 3000.
+TEST(VerifiedGradients, OfWhatStepsOfDifferencesAreTooLongFor) {
+  const TextRun run = run_text(R"_({"catena": 1, "parameters": {"L": 1},
+  "bodies": {"ball": {"mass": 1, "particle": true, "position": ["L", 0]}},
+  "constraints": [{"type": "absolute_x", "i": "ball", "value": "L"}, {"type": "absolute_y", "i": "ball", "value": 0}],
+  "analyses": [{"type": "sensitivity", "parameters": ["L"], "verify": true,
+    "of": {"type": "equilibrium", "measures": {"steep": {"final": "=exp(3000*(ball.x-1))"}}}}]})_");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  EXPECT_NEAR(gradient(run, "steep", 0), 3000, 1e-6);
+  EXPECT_LT(field<double>(run, "deviation"), 1e-5);
+}
+
+// A ball in oil that has come to rest: what its energy has is rounding, and so are derivatives of it.
+TEST(VerifiedGradients, OfWhatIsRoundingOfZero) {
+  const TextRun run = run_text(R"({"catena": 1, "parameters": {"c": 40},
+  "bodies": {"ball": {"mass": 1, "particle": true, "velocity": [1, 0]}},
+  "constraints": [{"type": "absolute_y", "i": "ball", "value": 0}],
+  "forces": [{"type": "spring_damper", "i": ["ground", [-1, 0]], "j": "ball", "k": 0, "c": "c"}],
+  "analyses": [{"type": "sensitivity", "parameters": ["c"], "verify": true, "of": {"type": "dynamics", "until": 3,
+    "every": 1, "measures": {"rest": {"final": "energy.kinetic"}, "way": {"final": "ball.x"}}}}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  EXPECT_NEAR(gradient(run, "way", 0), -1 / 1600.0, 1e-9);
+  EXPECT_LT(std::abs(value(run, "rest")), 1e-13);
+  EXPECT_LT(field<double>(run, "deviation"), 1e-4);
+}
+
 TEST(FrequencyGradients, OfDoubleOnesAreRefused) {
   const TextRun run = run_text(R"({"catena": 1, "parameters": {"k": 7},
   "bodies": {"a": {"mass": 2, "particle": true}, "b": {"mass": 2, "particle": true, "position": [1, 0]}},

@@ -16,6 +16,9 @@ namespace {
 
 // Differences of second order: the step that balances rounding (1e-12 of a run) with the cube of the step.
 constexpr double part_of_parameter = 1e-4;
+// Where derivatives are off by more than this the step may be too long for differences, as of cables as stiff as
+// millimetres of elongation make them: then one shorter by this decides, whose rounding is 1e-6.
+constexpr double suspicious = 1e-3, shorter = 1e-2;
 // A column that is below this everywhere, in SI units, is rounding of zero, and so are its differences.
 constexpr double no_output = 1e-13;
 // Length scales or rad: a place that is an equilibrium is found again to this.
@@ -127,8 +130,23 @@ class Comparison {
     return task;
   }
 
+  // A wrong derivative is off from differences of any step, a right one from those of steps that are too long for it.
   void compare(std::size_t p, double value) {
-    const double size = value != 0 ? std::abs(value) : 1, step = part_of_parameter * size;
+    const double size = value != 0 ? std::abs(value) : 1, before = std::exchange(largest_, 0.0);
+    compare_at_distance(p, value, size, part_of_parameter * size);
+    if (largest_ > suspicious) {
+      const std::vector<std::string> doubts = doubts_;
+      const std::int64_t compared = std::exchange(compared_, 0);
+      const double longer = std::exchange(largest_, 0.0);
+      compare_at_distance(p, value, size, shorter * part_of_parameter * size);
+      if (compared_ == 0 || largest_ > longer) largest_ = longer;
+      doubts_ = doubts;
+      compared_ = compared;
+    }
+    largest_ = std::max(largest_, before);
+  }
+
+  void compare_at_distance(std::size_t p, double value, double size, double step) {
     std::array<KeptRows, 2> rows{KeptRows(nullptr), KeptRows(nullptr)};
     std::array<AnalysisResult, 2> shifted;
     if (!run_beside(p, value, step, context_.task.of.front(), rows, shifted)) return;
@@ -140,11 +158,19 @@ class Comparison {
       const double unit = std::max({std::abs(derivative), std::abs(difference), scale / size});
       if (unit > 0) largest_ = std::max(largest_, std::abs(derivative - difference) / unit);
     };
+    // What is rounding of zero agrees, with its differences.
+    const auto take_measure = [&](double derivative, double below, double above, double scale) {
+      const double largest = std::max({std::abs(derivative), scale, std::abs(below), std::abs(above)});
+      if (largest > no_output)
+        take(derivative, below, above, scale);
+      else
+        ++compared_;
+    };
     for (std::size_t m = 0; m < result_.measures.size(); ++m) {
       if (m >= shifted[0].measures.size() || m >= shifted[1].measures.size()) break;
       const auto &below = shifted[0].measures[m].value, &above = shifted[1].measures[m].value;
       if (below && above && result_.measures[m].value && p < result_.measures[m].gradient.size())
-        take(result_.measures[m].gradient[p], *below, *above, std::abs(*result_.measures[m].value));
+        take_measure(result_.measures[m].gradient[p], *below, *above, std::abs(*result_.measures[m].value));
     }
     // Derivatives of rows are those at fixed instants.
     if (const std::optional<AnalysisTask> fixed = with_fixed_rows(p)) {
