@@ -19,8 +19,9 @@ namespace catena {
 
 class MotionMeasures final : public MotionAdjoint, public PhaseWitness, public MeasureAdjoint {
  public:
-  MotionMeasures(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start)
-      : MotionAdjoint(evaluator, models, parameters, start) {}
+  MotionMeasures(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start,
+                 const DerivativeAim& aim = {})
+      : MotionAdjoint(evaluator, models, parameters, start, aim) {}
 
   /// The events of the list; before the motion, of whose phases this object is the witness then.
   void follow(std::vector<DesignEvent> events) { events_ = std::move(events); }

@@ -27,7 +27,8 @@ PhasedMeasures::PhasedMeasures(PhasedDesign design, GivenByModel start)
       open_plan_(Plan::make(*contacts_.model, design.open_rows)),
       events_(std::move(design.events)),
       sizes_(std::move(design.sizes)),
-      given_start_(start) {
+      given_start_(start),
+      aim_(std::move(design.aim)) {
   if (const std::string why = AdjointMechanism::why_not(*contacts_.model, true); !why.empty()) {
     fail("the adjoint of the motion is not built where " + why);
     return;

@@ -11,7 +11,7 @@
 //
 // Slides of places that stick keep a value: what it weighs in the projections of the phase is gathered and goes to the
 // state at which they began to. Equations and steps are those of phased_derivatives.hpp: both give the same gradient to
-// rounding.
+// rounding, but for steps that are too long for derivatives, which each of them divides by its own error.
 //
 // No gradient where those have none, and where several contacts close at once, several events act together or engage
 // constraints: whether those hold whatever the parameters are is seen by carrying derivatives forward alone. Source:
@@ -19,12 +19,14 @@
 // Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), chapter 7.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
 
 #include "catena/analysis/adjoint/column_slopes.hpp"
 #include "catena/analysis/adjoint/measure_adjoint.hpp"
+#include "catena/analysis/motion/derivative_error.hpp"
 #include "catena/analysis/sensitivity/phases/phase_transpose.hpp"
 #include "catena/analysis/sensitivity/phases/phased_derivatives.hpp"
 
@@ -79,6 +81,7 @@ class PhasedMeasures final : public StateDerivatives, public PhaseWitness, publi
   struct Way {
     Vector y1{}, y0{}, gradient{}, anchor{};  // ^ at the end of the step and at its beginning, of parameters, of rows
     std::vector<Vector> slopes{}, back{};     // k_s^ by the interpolant; Y_s^
+    std::array<std::vector<Vector>, 2> errors{};  // Y_s^ of the embedded errors E5 and E3
     bool begun = false;
     double instant = 0;  // r
   };
@@ -110,10 +113,18 @@ class PhasedMeasures final : public StateDerivatives, public PhaseWitness, publi
   bool crosses_at(double t) const;
   // The way back: phased_measures_back.cpp.
   bool go_back_to_end(std::size_t k, std::span<const Look>& looks);
-  bool go_back_over(const Step& step, std::span<const Look>& looks);
+  /// Over the last of the first k steps; k: the number of those that are left.
+  bool go_back_over(std::size_t& k, std::span<const Look>& looks);
   bool recompute(const Step& step, bool interpolated);
-  bool stages_back(const Step& step, bool interpolated);
-  bool stage_back(std::size_t stage, const Vector& k, Way& way);
+  /// `checks`: errors are carried along.
+  bool stages_back(const Step& step, bool interpolated, bool checks);
+  bool stage_back(std::size_t stage, const Vector& k, Vector& back);
+  /// The same of both embedded errors.
+  bool errors_back(double h, std::size_t stage, Way& way);
+  /// How many times what it may y^ misses of the step over which all went back.
+  double excess() const;
+  std::size_t begun() const;
+  bool divide(std::size_t& k, int parts);
   bool project_back(const Point& point, Way& way, Vector& y);
   bool add_looks(std::span<const Look> looks, const Point& there, const std::function<Vector&(std::size_t)>& target);
   bool add_inside(const Step& step, std::span<const Look> looks);
@@ -137,6 +148,8 @@ class PhasedMeasures final : public StateDerivatives, public PhaseWitness, publi
   std::vector<DesignEvent> events_;
   Vector sizes_;
   GivenByModel given_start_;
+  DerivativeAim aim_;
+  BackChecks checks_;
   std::unique_ptr<AdjointMechanism> adjoint_;
   std::vector<std::unique_ptr<AdjointMechanism::Reached>> reached_;  // by group
   std::unique_ptr<PhaseEquations> equations_;

@@ -131,8 +131,7 @@ bool PhasedMeasures::recompute(const Step& step, bool interpolated) {
   return true;
 }
 
-bool PhasedMeasures::stage_back(std::size_t s, const Vector& k, Way& way) {
-  Vector& back = way.back[s];
+bool PhasedMeasures::stage_back(std::size_t s, const Vector& k, Vector& back) {
   const std::span<const double> k_q = std::span(k).first(n_), k_qd = std::span(k).subspan(n_);
   if (!transpose_->weigh(k_qd, {})) return singular_at(stage_[s].t);
   std::fill(back.begin(), back.end(), 0.0);
@@ -142,11 +141,10 @@ bool PhasedMeasures::stage_back(std::size_t s, const Vector& k, Way& way) {
   for (std::size_t c = 0; c < n_; ++c) {
     if (c >= plan().column.size() || plan().column[c] < 0) back_q[c] = back_qd[c] = 0;
   }
-  add_weights(stage_[s], way);
   return true;
 }
 
-bool PhasedMeasures::stages_back(const Step& step, bool interpolated) {
+bool PhasedMeasures::stages_back(const Step& step, bool interpolated, bool checks) {
   const Tableau& table = dormand_prince_8();
   const double h = step.to - step.from;
   static const auto of_step = stage_weights_back(false), of_interpolant = stage_weights_back(true);
@@ -168,7 +166,9 @@ bool PhasedMeasures::stages_back(const Step& step, bool interpolated) {
       const std::span<const double> begin =
           interpolated ? std::span<const double>(way.slopes[s]) : std::span<const double>();
       add_stages(begin, h, terms[s], vector_of, slope);
-      if (!stage_back(s, slope, way)) return false;
+      if (!stage_back(s, slope, way.back[s])) return false;
+      add_weights(stage_[s], way);
+      if (checks && s < last && !errors_back(h, s, way)) return false;
       if (s == last) add_times(way.y1, 1, way.back[s]);
     }
   }
@@ -178,26 +178,50 @@ bool PhasedMeasures::stages_back(const Step& step, bool interpolated) {
       if (s != last) add_times(way.y0, 1, way.back[s]);
     }
     add_times(way.y0, 1, way.y1);
-    std::swap(way.y0, way.y1);
   }
   return true;
 }
 
-bool PhasedMeasures::go_back_over(const Step& step, std::span<const Look>& looks) {
+bool PhasedMeasures::go_back_over(std::size_t& k, std::span<const Look>& looks) {
+  const Step& step = steps_[k - 1];
   const bool inside = !looks.empty() && looks.back().t > step.from;
-  if (!inside && std::none_of(ways_.begin(), ways_.end(), [](const Way& way) { return way.begun; })) return true;
+  if (!inside && begun() == 0) {
+    --k;
+    return true;
+  }
   hold(phases_[step.phase]);
   evaluator().go_to_curve_places(step.places);
   for (Group& group : groups()) group.mechanism.go_to_curve_places(step.places);
   if (!recompute(step, inside)) return false;
+  const double h = step.to - step.from;
+  const bool checks = aim_.divides() && (checks_.is_due(h, begun()) || (inside && begun() < ways_.size()));
+  const std::vector<Way> ways_before = checks ? ways_ : std::vector<Way>();
+  const std::span<const Look> looks_before = looks;
   for (Way& way : ways_) {
     std::fill(way.y0.begin(), way.y0.end(), 0.0);
     if (inside) way.slopes.assign(dormand_prince_8().c.size(), Vector(2 * n_, 0.0));
+    if (checks) way.errors.fill(std::vector<Vector>(at(dormand_prince_8().stages), Vector(2 * n_, 0.0)));
   }
   while (!looks.empty() && looks.back().t > step.from) {
     if (!add_inside(step, take_last(looks))) return false;
   }
-  return stages_back(step, inside);
+  if (!stages_back(step, inside, checks)) return false;
+  const double missed = checks ? excess() : 0;
+  if (missed > 1) {
+    ways_ = ways_before;
+    looks = looks_before;
+    checks_.ask();
+    return divide(k, parts_for(missed)) && go_back_over(k, looks);
+  }
+  if (checks)
+    checks_.note(h, begun(), missed);
+  else
+    checks_.note_unchecked();
+  for (Way& way : ways_) {
+    if (way.begun) std::swap(way.y0, way.y1);
+  }
+  --k;
+  return true;
 }
 
 bool PhasedMeasures::go_back_to_end(std::size_t k, std::span<const Look>& looks) {

@@ -127,6 +127,7 @@ bool PhasedMeasures::end_back(const Crossing& crossing, const Step& last, Passag
 }
 
 bool PhasedMeasures::cross_back(const Crossing& crossing, const Step& last) {
+  checks_.ask();
   Passage passage;
   if (!find_passage(crossing, last, passage)) return false;
   const auto along = [this](const Vector& y, const Point& point) {

@@ -87,8 +87,9 @@ std::optional<MeasureAdjoint::MeasureGradients> PhasedMeasures::find_gradients(
                                   .anchor = Vector(at(plan().rows), 0.0),
                                   .back = std::vector<Vector>(dormand_prince_8().c.size(), still)});
   std::span<const Look> looks(all);
-  for (std::size_t k = steps_.size(); k > 0; --k) {
-    if (!go_back_to_end(k, looks) || !go_back_over(steps_[k - 1], looks)) return {};
+  checks_ = {};
+  for (std::size_t k = steps_.size(); k > 0;) {
+    if (!go_back_to_end(k, looks) || !go_back_over(k, looks)) return {};
   }
   hold(phases_.front());
   const Point begin = point_of(steps_.front().from, Side::after, steps_.front().begin);

@@ -9,6 +9,7 @@
 
 #include <vector>
 
+#include "catena/analysis/motion/derivative_error.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/assembly/design/design_mechanism.hpp"
 
@@ -23,5 +24,8 @@ void combine_stages(const StageSum& sum, double h, const DesignVector& from, con
 /// The derivatives of y at a part of a step of length h, which has 16 stages; values are left alone.
 void interpolate_derivatives(double part, double h, const DesignVector& begin, const DesignVector& end,
                              const std::vector<DesignVector>& stages, DesignVector& y);
+/// What they miss at the end, of one group (motion/derivative_error.hpp).
+double error_of_derivatives(double h, const DesignVector& begin, const DesignVector& end,
+                            const std::vector<DesignVector>& stages, const DerivativeAim& aim, std::size_t group);
 
 }  // namespace catena

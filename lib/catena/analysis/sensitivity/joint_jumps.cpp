@@ -1,5 +1,4 @@
-#include "catena/analysis/sensitivity/joint_jumps.hpp"
-
+// Jumps of functions of time that meet at an instant and move apart.
 #include <algorithm>
 #include <array>
 #include <cmath>

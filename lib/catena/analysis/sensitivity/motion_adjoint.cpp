@@ -4,19 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
+#include "catena/columns/switches.hpp"
 
 namespace catena {
 MotionAdjoint::~MotionAdjoint() = default;
 
-MotionAdjoint::MotionAdjoint(const Evaluator& of, const DesignModels& models, int parameters, GivenByModel start)
+MotionAdjoint::MotionAdjoint(const Evaluator& of, const DesignModels& models, int parameters, GivenByModel start,
+                             DerivativeAim aim)
     : StateDerivatives(of, models, parameters),
       n_(at(plan().coordinates())),
       given_start_(start),
       mechanism_(evaluator()),
-      again_(evaluator()) {
+      again_(evaluator()),
+      aim_(std::move(aim)),
+      bends_(!switches_of_loads(evaluator().model(), {}, true).empty()) {
   if (const std::string why = AdjointMechanism::why_not(evaluator().model()); !why.empty()) {
     fail("the adjoint of the motion is not built where " + why);
     return;

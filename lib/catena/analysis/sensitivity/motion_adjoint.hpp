@@ -17,7 +17,9 @@
 // that are transposed are those of MotionDerivatives: both give the same gradient to rounding. Several measures share
 // stages, factors and instants. Stages are recomputed from stored ends of steps: memory 4 x coordinates a step. Steps
 // of another method, shorter than this one needs, are gone back over several at once, as long as what is recomputed
-// misses the motion's own end by no more than its single steps do.
+// misses the motion's own end by no more than its single steps do; and a step of the motion that is too long for y^ in
+// parts (motion/derivative_error.hpp). That is looked at now and then, by the errors E5 and E3 of y0^: the same way
+// back from y1^ with the weights of the embedded errors in place of b_s.
 //
 // An instant t* at which the motion goes on in another way (motion_crossing.hpp), transposed, r what t* weighs:
 //
@@ -35,6 +37,7 @@
 #include <memory>
 #include <optional>
 
+#include "catena/analysis/motion/derivative_error.hpp"
 #include "catena/analysis/sensitivity/motion_crossing.hpp"
 #include "catena/analysis/sensitivity/recomputed_steps.hpp"
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
@@ -56,7 +59,8 @@ struct MotionPulse {
 class MotionAdjoint : public StateDerivatives {
  public:
   /// As MotionDerivatives.
-  MotionAdjoint(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start);
+  MotionAdjoint(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start,
+                DerivativeAim aim = {});
   ~MotionAdjoint() override;
 
   bool goes_back() const override { return true; }
@@ -126,7 +130,15 @@ class MotionAdjoint : public StateDerivatives {
   /// y^ through the projection at the end, which factorize_end() has prepared.
   bool factorize_end(double t, Side side, std::span<const double> values);
   void project_back(double t, Side side, std::span<const double> values, Way& way, Vector& y1);
-  void stage_back(int number, const Vector& k, Way& way);
+  /// Parameters gather in `way`, if there is one.
+  void stage_back(int number, const Vector& k, Way* way);
+  /// How many times what it may y^ misses by the step over which `way` went back.
+  double excess(const Step& step, const Way& way);
+  /// Of y0^ by one embedded error: of positions and velocities, in parts of y^.
+  double error_back(double h, const StageSum& error, const Way& way);
+  /// Whether it is to be looked at in a step of this length; `inside`: pulses lie in it.
+  bool is_due(double h, bool inside) const;
+  std::size_t begun() const;
   void add_parameters(double t, Side side, const AdjointWeights& weights, std::span<const double> qdd, Way& way);
   /// What pulses at an instant with this state add to y^ there.
   bool add_pulses(std::span<const Look> looks, double t, Side side, std::span<const double> values,
@@ -142,7 +154,9 @@ class MotionAdjoint : public StateDerivatives {
   static std::span<const Look> take_last(std::span<const Look>& looks);
   /// The pulses at and after the end of step k - 1, the last one left, and from y^ after that instant to y^ before it.
   bool go_back_to_end(std::size_t k, std::span<const Look>& looks);
-  std::size_t go_back_over_block(std::size_t k, std::span<const Look>& looks, Step& joined);
+  bool go_back_over_block(std::size_t& k, std::span<const Look>& looks, Step& joined);
+  /// Step k - 1 into so many; k: the number of steps to its end.
+  bool divide(std::size_t& k, int parts);
   bool cross_back(const MotionCrossing& crossing, const Step& last);
   bool find_passage(const MotionCrossing& crossing, Passage& passage);
   bool find_jump(const MotionCrossing& crossing, Passage& passage);
@@ -163,6 +177,9 @@ class MotionAdjoint : public StateDerivatives {
   std::map<std::size_t, MotionCrossing> crossings_;  // by the number of the step that follows
   std::vector<Way> ways_;                            // by measure
   int blocks_ = 0;
+  DerivativeAim aim_;
+  bool bends_ = false;  // forces do
+  BackChecks checks_;
   bool goes_on_ = false;  // the motion goes on from where the last step ended
   Vector w_, mu_, zero_rows_, zero_loads_, masses_, slope_;
 };

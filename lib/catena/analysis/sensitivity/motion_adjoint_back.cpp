@@ -61,7 +61,7 @@ void MotionAdjoint::project_back(double t, Side side, std::span<const double> va
   }
 }
 
-void MotionAdjoint::stage_back(int number, const Vector& k, Way& way) {
+void MotionAdjoint::stage_back(int number, const Vector& k, Way* way) {
   Stage& stage = again_.stage(number);
   Vector& back = back_[at(number)];
   const std::span<const double> k_q = std::span(k).first(n_), k_qd = std::span(k).subspan(n_);
@@ -77,7 +77,7 @@ void MotionAdjoint::stage_back(int number, const Vector& k, Way& way) {
   for (std::size_t c = 0; c < n_; ++c) {
     if (c >= plan().column.size() || plan().column[c] < 0) back_q[c] = back_qd[c] = 0;
   }
-  add_parameters(stage.t, stage.side, weights, qdd, way);
+  if (way) add_parameters(stage.t, stage.side, weights, qdd, *way);
 }
 
 void MotionAdjoint::go_back(const Step& step, Way& way, bool interpolated) {
@@ -93,7 +93,7 @@ void MotionAdjoint::go_back(const Step& step, Way& way, bool interpolated) {
     const std::span<const double> begin =
         interpolated ? std::span<const double>(way.slopes[at(s)]) : std::span<const double>();
     add_stages(begin, h, terms[at(s)], vector_of, slope_);
-    stage_back(s, slope_, way);
+    stage_back(s, slope_, &way);
     if (s == table.stages) add_times(way.y1, 1, back_[at(s)]);
   }
   for (int s = 0; s < stages; ++s) {
@@ -129,9 +129,9 @@ std::optional<std::vector<double>> MotionAdjoint::gradient(std::vector<MotionPul
   return std::move(all->front());
 }
 
-// Goes back over a block of the first k steps, the last ones, to the instant of the next pulse at most. Returns of how
-// many steps it is; 0: that cannot be done.
-std::size_t MotionAdjoint::go_back_over_block(std::size_t k, std::span<const Look>& looks, Step& joined) {
+// Goes back over a block of the first k steps, the last ones, to the instant of the next pulse at most; k: the number
+// of those that are left.
+bool MotionAdjoint::go_back_over_block(std::size_t& k, std::span<const Look>& looks, Step& joined) {
   const Step& last = steps_[k - 1];
   const double next = looks.empty() ? steps_.front().from : looks.back().pulse->t;
   // A step that has a pulse inside is taken by itself.
@@ -141,31 +141,49 @@ std::size_t MotionAdjoint::go_back_over_block(std::size_t k, std::span<const Loo
   while (given < std::min(k, RecomputedSteps::most_at_once) && steps_[k - given - 1].from >= bound &&
          !crossings_.contains(k - given))
     ++given;
-  const auto singular = [&] {
-    lose(again_.singular_at(), "constraints depend on each other");
-    return std::size_t{0};
-  };
+  const auto singular = [&] { return lose(again_.singular_at(), "constraints depend on each other"); };
   const std::size_t count =
       again_.join(std::span<const Step>(steps_).subspan(k - given, given), RecomputedSteps::From::back, joined);
   if (count == 0) return singular();
   static_cast<void>(end_stage());  // after the first stage, which has been evaluated now
+  const double h = joined.to - joined.from;
+  const bool checks = is_due(h, inside);
+  const std::vector<Way> ways = checks ? ways_ : std::vector<Way>();
+  const std::span<const Look> looks_before = looks;
   for (Way& way : ways_) {
     std::fill(way.y0.begin(), way.y0.end(), 0.0);
     if (inside) way.slopes.assign(dormand_prince_8().c.size(), Vector(2 * n_, 0.0));
   }
   if (inside && !again_.prepare_interpolant(joined)) return singular();
   while (!looks.empty() && looks.back().pulse->t > joined.from) {
-    if (!add_inside(joined, take_last(looks))) return 0;
+    if (!add_inside(joined, take_last(looks))) return false;
   }
-  if (!factorize_end(joined.to, Side::before, joined.end)) return 0;
+  if (!factorize_end(joined.to, Side::before, joined.end)) return false;
+  double missed = 0;
   for (Way& way : ways_) {
     if (!way.begun) continue;
     go_back(joined, way, inside);
+    if (checks) missed = std::max(missed, excess(joined, way));
     std::swap(way.y0, way.y1);
   }
+  if (missed > 1) {
+    ways_ = ways;
+    looks = looks_before;
+    checks_.ask();
+    if (count > 1)
+      again_.join_less(h / parts_for(missed));
+    else if (!divide(k, parts_for(missed)))
+      return false;
+    return go_back_over_block(k, looks, joined);
+  }
+  if (checks)
+    checks_.note(h, begun(), missed);
+  else
+    checks_.note_unchecked();
   again_.exchange_first(end_);
   ++blocks_;
-  return count;
+  k -= count;
+  return true;
 }
 
 bool MotionAdjoint::go_back_to_end(std::size_t k, std::span<const Look>& looks) {
@@ -201,12 +219,11 @@ std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
   again_.begin_anew();
   if (end_) end_->t = std::numeric_limits<double>::quiet_NaN();
   blocks_ = 0;
+  checks_ = {};
   Step joined;
   for (std::size_t k = steps_.size(); k > 0;) {
     if (!go_back_to_end(k, looks)) return {};
-    const std::size_t count = go_back_over_block(k, looks, joined);
-    if (count == 0) return {};
-    k -= count;
+    if (!go_back_over_block(k, looks, joined)) return {};
   }
   const Step& first = steps_.front();
   const auto end_of_way = [this](std::size_t m) -> Vector& { return end_of(m); };

@@ -121,6 +121,7 @@ bool MotionAdjoint::event_back(const MotionCrossing& crossing, const Passage& pa
 }
 
 bool MotionAdjoint::cross_back(const MotionCrossing& crossing, const Step& last) {
+  checks_.ask();
   Passage passage{.t = last.to, .before = last.end};
   if (!find_passage(crossing, passage)) return false;
   for (Way& way : ways_) {

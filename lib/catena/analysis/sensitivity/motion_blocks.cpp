@@ -45,9 +45,9 @@ bool MotionDerivatives::catch_up(double t) {
     for (Track& track : tracks_) track.end = track.begin;
   }
   const auto alone = [&] { return !pending_.empty() && t < pending_.back().to ? 1 : 0; };
-  while (why().empty() && pending_.size() > at(alone()))
-    take_block(std::span<const Step>(pending_).first(pending_.size() - at(alone())));
-  if (why().empty() && !pending_.empty()) take_block(pending_);
+  while (why().empty() && !pending_.empty() && !(is_part(pending_.front()) && t <= to_))
+    take_block(std::span<const Step>(pending_).first(std::max(pending_.size() - at(alone()), std::size_t{1})));
+  if (why().empty() && t < from_ && !parts_.empty() && t >= parts_.front().step.from) return_to_part(t);
   return why().empty();
 }
 
@@ -64,18 +64,43 @@ void MotionDerivatives::end_block() {
 }
 
 bool MotionDerivatives::take_block(std::span<const Step> steps) {
-  begin_block(steps.front().from, steps.front().begin);
-  std::size_t count = tangents_ ? again_->join(steps, RecomputedSteps::From::front, step_) : 0;
-  watched_.recomputed = true;
-  by_tangents_ = count > 0 && take_by_tangents();
-  if (!by_tangents_) {
-    count = 1;
-    step_ = steps.front();
-    if (!take_in_dual_numbers()) return false;
+  if (is_part(steps.front())) {
+    const Step part = steps.front();
+    pending_.erase(pending_.begin());
+    return take_part(part);
+  }
+  parts_.clear();
+  const double known = steps.front().to == watched_.too_long_to ? watched_.excess : 0;
+  std::size_t count = 1;
+  const double missed = known > 1 ? known : take_joined(steps, count);
+  if (!why().empty()) return false;
+  if (missed > 1) {
+    undo_step();
+    const Step step = steps.front();
+    pending_.erase(pending_.begin());
+    return take_in_parts(step, missed);
   }
   note_block(steps.first(count));
   pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(count));
   return true;
+}
+
+double MotionDerivatives::take_joined(std::span<const Step> steps, std::size_t& count) {
+  double missed = 0;
+  for (;;) {
+    begin_block(steps.front().from, steps.front().begin);
+    count = tangents_ ? again_->join(steps, RecomputedSteps::From::front, step_) : 0;
+    watched_.recomputed = true;
+    by_tangents_ = count > 0 && take_by_tangents();
+    missed = by_tangents_ ? excess() : 0;
+    if (count <= 1 || missed <= 1) break;
+    again_->join_less((step_.to - step_.from) / parts_for(missed));
+    undo_step();
+  }
+  if (by_tangents_) return missed;
+  count = 1;
+  step_ = steps.front();
+  return take_in_dual_numbers() ? excess() : 0;
 }
 
 // step_ has been taken: it is made of these.
@@ -122,6 +147,7 @@ bool MotionDerivatives::begin_watched(double from, std::span<const double> rates
     if (!RecomputedSteps::evaluate(place(), from, Side::after)) return false;
   }
   // What is known of the last block is overwritten: nothing inside of it can be asked for any more.
+  parts_.clear();
   from_ = to_;
   has_step_ = false;
   to_rows(begin, rows_.begin);
@@ -149,16 +175,22 @@ bool MotionDerivatives::take_watched(const Step& step) {
   const bool watched = std::exchange(watched_.stages, 0) == dormand_prince_8().stages && watched_.from == step.from &&
                        watched_.to == step.to;
   watched_.begun = false;
+  watched_.excess = 0;
   if (!watched) return false;
-  watched_.place_serves = false;
-  place().y = step.end;
-  if (!RecomputedSteps::evaluate(place(), step.to, Side::before)) return false;
   begin_block(step.from, step.begin);
   step_ = step;
   tangents_->finish_step(step.to - step.from, rows_.begin, rows_.end);
+  by_tangents_ = true;
+  watched_.place_serves = false;
+  if (watched_.excess = excess(); watched_.excess > 1) {
+    watched_.too_long_to = step.to;
+    return false;
+  }
+  place().y = step.end;
+  if (!RecomputedSteps::evaluate(place(), step.to, Side::before)) return false;
   tangents_->project_with_factors(place(), rows_.end);
   end_block();
-  watched_.place_serves = by_tangents_ = true;
+  watched_.place_serves = true;
   watched_.recomputed = false;
   note_block(std::span(&step, 1));
   return true;
@@ -168,6 +200,9 @@ bool MotionDerivatives::take_in_dual_numbers() {
   from_ = step_.from;
   to_ = step_.to;
   if (!make_step(to_ - from_)) return false;
+  if (step_.end.empty()) {
+    for (const DesignScalar& y : tracks_.front().end) step_.end.push_back(y.v);
+  }
   take_values(step_.end, &Track::end);
   return project_end(to_, Side::before);
 }

@@ -12,11 +12,12 @@
 namespace catena {
 
 MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters,
-                                     GivenByModel start)
+                                     GivenByModel start, DerivativeAim aim)
     : StateDerivatives(evaluator, models, parameters),
       n_(at(plan().coordinates())),
       system_(evaluator.shared_plan(), SaddleBlock::diagonal),
       given_start_(start),
+      aim_(std::move(aim)),
       values_(n_),
       stage_(2 * n_),
       y_(2 * n_) {

@@ -8,12 +8,13 @@
 // (motion_tangents.hpp). Where the motion takes steps of this method, and lets them be seen, its own stages are those
 // of the derivatives, with their factors (motion/stage_watcher.hpp). Else every stage is recomputed from the state at
 // the step's start, and steps that are shorter than this method needs, between instants that are asked for, are taken
-// several as one (recomputed_steps.hpp). Where constraints
-// depend on each other, and for models with laws of state, ropes over pulleys or massless bodies, step by step in dual
-// numbers. At the step's end positions and velocities are those of the motion, and their derivatives are projected as
-// these were: Phi_q q_p = -Phi_p, and the same for velocities, changed least in the metric of the masses. What a
-// projection's own bending adds is of the size of the drift that it removes, that is of the tolerance. Between ends of
-// steps derivatives follow from the interpolant of order 7 of their stages.
+// several as one (recomputed_steps.hpp). A step that is too long for derivatives, though not for the motion, is taken
+// in parts (motion/derivative_error.hpp). Where constraints depend on each other, and for models with laws of state,
+// ropes over pulleys or massless bodies, step by step in dual numbers. At the step's end positions and velocities are
+// those of the motion, and their derivatives are projected as these were: Phi_q q_p = -Phi_p, and the same for
+// velocities, changed least in the metric of the masses. What a projection's own bending adds is of the size of the
+// drift that it removes, that is of the tolerance. Between ends of steps derivatives follow from the interpolant of
+// order 7 of their stages.
 //
 // At an instant t* at which functions of time jump, and which parameters move, the state's derivatives jump:
 //
@@ -30,6 +31,7 @@
 #include <memory>
 #include <optional>
 
+#include "catena/analysis/motion/derivative_error.hpp"
 #include "catena/analysis/motion/stage_watcher.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/design_steps.hpp"
@@ -43,13 +45,16 @@ namespace catena {
 
 class MotionDerivatives final : public StateDerivatives, private StageWatcher {
  public:
-  MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start);
+  MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start,
+                    DerivativeAim aim = {});
 
   void cover(const MotionStretch& stretch) override;
   bool find(const Snapshot& snapshot) override;
   StageWatcher* stage_watcher() override { return tangents_ ? this : nullptr; }
   /// As how many steps the motion's were taken so far.
   int blocks() const { return blocks_; }
+  /// How many steps were taken in parts so far.
+  int divided() const { return divided_; }
 
  protected:
   bool find_before(const Snapshot& snapshot) override;
@@ -87,6 +92,23 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
   bool catch_up(double t);
   /// Over as many of these steps as can be taken as one; what waits begins with them.
   bool take_block(std::span<const Step> steps);
+  /// Of a step that was divided: states where a part begins are those of the recomputed motion, its own at the end.
+  struct Part {
+    Step step;
+    std::vector<DesignVector> begin;  // by group
+  };
+  /// Takes a step, which misses so many times what it may, in parts; those that still miss too much, in parts again.
+  bool take_in_parts(const Step& step, double missed);
+  bool divide(const Step& whole, double missed);
+  bool take_part(const Step& part);
+  bool is_part(const Step& step) const { return !parts_.empty() && step.from < parts_.back().step.to; }
+  /// To the part of the step divided last in which t lies.
+  bool return_to_part(double t);
+  /// How many times what it may the step that was taken misses derivatives.
+  double excess();
+  void undo_step();
+  /// Of as many of the steps as are taken as one: `count`.
+  double take_joined(std::span<const Step> steps, std::size_t& count);
   /// The same by tangents, of the steps joined in step_; false where constraints depend on each other.
   bool take_by_tangents();
   bool take_in_dual_numbers();
@@ -118,6 +140,7 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
   std::size_t n_;  // coordinates
   SaddleSystem system_;
   GivenByModel given_start_;
+  DerivativeAim aim_;
   bool started_ = false, has_step_ = false, interpolant_ready_ = false;
   bool started_by_trial_ = false;  // at a step that was tried, before anything was shown
   double from_ = 0, to_ = 0;
@@ -132,7 +155,8 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
   std::vector<Step> pending_, block_;              // steps that wait, and those that the last block is made of
   Step step_;                                      // that block
   bool by_tangents_ = false;                       // it was carried over by them
-  int blocks_ = 0;
+  int blocks_ = 0, divided_ = 0;
+  std::vector<Part> parts_;           // of the step that was divided last
   bool goes_on_ = false;              // the motion goes on from where the last step ended ...
   RecomputedSteps::Vector last_end_;  // ... here
   TangentRows rows_;
@@ -140,9 +164,10 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
   struct Watched {
     double from = 0, to = 0;
     int stages = 0;
-    bool begun = false;         // the first one is known, whatever the step's length
-    bool place_serves = false;  // place() has what is known where it begins
-    bool recomputed = false;    // again_ has the stages of the last block
+    bool begun = false;                  // the first one is known, whatever the step's length
+    bool place_serves = false;           // place() has what is known where it begins
+    bool recomputed = false;             // again_ has the stages of the last block
+    double excess = 0, too_long_to = 0;  // of the last one, and where it ends, if it is to be divided
   } watched_;
 };
 

@@ -1,6 +1,7 @@
 #include "catena/analysis/sensitivity/motion_tangents.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "catena/analysis/motion/stage_sums.hpp"
 #include "catena/base/at.hpp"
@@ -88,6 +89,47 @@ void MotionTangents::step_stage(int s, const Place& place, double h, const Rows&
 
 void MotionTangents::finish_step(double h, const Rows& begin, Rows& end) const {
   add_second_order(second_order_weights().back(), h, begin, all_, end);
+}
+
+void MotionTangents::find_largest(std::span<const double> rows, std::span<double> largest) const {
+  for (const int c : all_) {
+    const std::span<const double> row = rows.subspan(at(c) * width_, width_);
+    for (std::size_t p = 0; p < width_; ++p) largest[p] = std::max(largest[p], std::abs(row[p]));
+  }
+}
+
+// E3 is asked for where E5 alone is too large.
+double MotionTangents::error(double h, const Rows& begin, const Rows& end, const DerivativeAim& aim) {
+  const std::size_t part = n_ * width_;
+  enum : std::size_t { of_q, of_qd, of_qdd, high_q, high_qd, low_q, low_qd, kinds };
+  largest_.assign(kinds * width_, 0.0);
+  const auto largest = [&](std::size_t kind) { return std::span(largest_).subspan(kind * width_, width_); };
+  for (const Rows* y : {&begin, &end}) {
+    find_largest(std::span(*y).first(part), largest(of_q));
+    find_largest(std::span(*y).subspan(part), largest(of_qd));
+  }
+  for (const int s : {0, dormand_prince_8().stages - 1}) find_largest(accelerations_[at(s)], largest(of_qdd));
+  const auto find = [&](const StageSum& weights, std::size_t kind) {
+    sum_.resize(part);
+    add_stages(
+        {}, 1, weights, [this](int k) { return accelerations_[at(k)].data(); }, sum_);
+    find_largest(sum_, largest(kind));
+  };
+  const auto relative = [&](std::size_t p, std::size_t q, std::size_t qd) {
+    return relative_error(h, largest(q)[p], largest(qd)[p], {largest(of_q)[p], largest(of_qd)[p], largest(of_qdd)[p]},
+                          aim.least(p));
+  };
+  find(embedded_error_high().of_q, high_q);
+  find(embedded_error_high().of_qd, high_qd);
+  double worst = 0;
+  for (std::size_t p = 0; p < width_; ++p) worst = std::max(worst, relative(p, high_q, high_qd));
+  if (worst <= aim.allowed()) return worst;
+  find(embedded_error_low().of_q, low_q);
+  find(embedded_error_low().of_qd, low_qd);
+  worst = 0;
+  for (std::size_t p = 0; p < width_; ++p)
+    worst = std::max(worst, error_of_step(relative(p, high_q, high_qd), relative(p, low_q, low_qd)));
+  return worst;
 }
 
 // The velocities of all stages are wanted here: those of the step first.

@@ -14,6 +14,7 @@
 #include <array>
 #include <vector>
 
+#include "catena/analysis/motion/derivative_error.hpp"
 #include "catena/analysis/motion/stage_sums.hpp"
 #include "catena/analysis/sensitivity/recomputed_steps.hpp"
 #include "catena/assembly/design/mechanism_tangents.hpp"
@@ -44,6 +45,8 @@ class MotionTangents {
   /// The same stage by stage, in their order, and then the end; `h`: of the whole step.
   void step_stage(int s, const Place& place, double h, const Rows& begin);
   void finish_step(double h, const Rows& begin, Rows& end) const;
+  /// What they miss there (motion/derivative_error.hpp), or more where that is no more than is allowed.
+  double error(double h, const Rows& begin, const Rows& end, const DerivativeAim& aim);
   /// The slopes of the interpolant's stages, after step() and with the projected end.
   void prepare_interpolant(RecomputedSteps& steps, double h, const Rows& begin, const Rows& end);
   void interpolate(double part, double h, const Rows& begin, const Rows& end, Rows& y) const;
@@ -60,6 +63,8 @@ class MotionTangents {
  private:
   void add_parameters(double t, Side side, std::span<const double> lambda, std::span<const double> qdd,
                       const TangentSums& sums);
+  /// By parameter, of all coordinates of bodies that move; `largest` is what there was before, or more.
+  void find_largest(std::span<const double> rows, std::span<double> largest) const;
   /// Solves for all parameters: loads to x in place, rows_ to multipliers.
   void solve(EquationsOfMotion& equations, std::span<double> x);
 
@@ -75,6 +80,7 @@ class MotionTangents {
   std::vector<Rows> accelerations_;     // by stage
   std::vector<Rows> velocities_;        // by stage, for the interpolant
   Rows stage_, rows_;
+  Rows sum_, largest_;  // of error()
   std::vector<double> masses_;
   SchurRows scratch_;
 };

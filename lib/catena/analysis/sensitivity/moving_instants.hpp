@@ -40,6 +40,12 @@ std::optional<double> rate_at_end(const MotionStretch& stretch, const std::funct
 /// The same of a single column.
 std::optional<double> rate_at_end(const MotionStretch& stretch, const ColumnSet& column);
 
+/// Whether all that jumps at an instant t moves together with it, by so much. The rate of an instant follows from a
+/// function's two sides there, which do not tell one jump from two of the parts of a sum that happen to meet: those
+/// move apart with the parameters, and what is made of the function has other values between them. `moved`: the
+/// functions of a model with a parameter moved a little; no jump may be left near t but where the rate puts it.
+bool jumps_together(const std::vector<TimeFunction<double>>& moved, double t, double by);
+
 /// What the functions of a model do together at an instant.
 struct MovingInstant {
   int order = 0;             ///< the lowest of those that jump; 0: none does

@@ -40,10 +40,10 @@ InterpolantWeights interpolant_weights(double part) {
   return weights;
 }
 
-std::array<std::vector<StageTerm>, 16> stage_weights_back(bool interpolated) {
+std::array<std::vector<StageTerm>, 16> stage_weights_back(bool interpolated, const StageSum& end) {
   const Tableau& table = dormand_prince_8();
   std::array<std::vector<StageTerm>, 16> back;
-  for (const StageTerm& term : table.b) back[at(term.stage)].push_back({step_end, term.weight});
+  for (const StageTerm& term : end) back[at(term.stage)].push_back({step_end, term.weight});
   for (int j = 0; j < (interpolated ? step_end : table.stages); ++j) {
     if (j == table.stages) continue;
     for (const StageTerm& term : table.a[at(j)]) back[at(term.stage)].push_back({j, term.weight});
@@ -105,6 +105,14 @@ bool RecomputedSteps::recompute(const Step& step) {
   return true;
 }
 
+RecomputedSteps::Vector RecomputedSteps::end_of(const Step& step) const {
+  Vector end(size_);
+  add_stages(
+      step.begin, step.to - step.from, dormand_prince_8().b, [this](int k) { return stages_[at(k)]->slope.data(); },
+      end);
+  return end;
+}
+
 bool RecomputedSteps::prepare_interpolant(const Step& step) {
   const Tableau& table = dormand_prince_8();
   const double h = step.to - step.from;
@@ -142,6 +150,11 @@ void RecomputedSteps::begin_anew() {
   single_misfit_ = 0;
   waits_ = 1;
   far_ = 0;
+}
+
+void RecomputedSteps::join_less(double length) {
+  reach_ = std::min(reach_, length);
+  waits_ = blocks_between_tries;
 }
 
 std::optional<RecomputedSteps::Step> RecomputedSteps::step_of(const MotionStretch& stretch, const Vector* before,

@@ -32,8 +32,10 @@ InterpolantWeights interpolant_weights(double part);
 /// In place of a stage: the end of the step.
 inline constexpr int step_end = 16;
 /// What the slope of every stage weighs in stages after it and in the end, h taken out; the interpolant's stages are
-/// among them or not. The slope at the end itself is reached through the projection there.
-std::array<std::vector<StageTerm>, 16> stage_weights_back(bool interpolated);
+/// among them or not. The slope at the end itself is reached through the projection there. `end`: what is made of the
+/// stages there.
+std::array<std::vector<StageTerm>, 16> stage_weights_back(bool interpolated,
+                                                          const StageSum& end = dormand_prince_8().b);
 
 class RecomputedSteps {
  public:
@@ -73,6 +75,8 @@ class RecomputedSteps {
   static std::optional<Step> step_of(const MotionStretch& stretch, const Vector* before, double& at);
   /// False where constraints depend on each other, at `t`.
   bool recompute(const Step& step);
+  /// The end of the step that was recomputed, by its stages.
+  Vector end_of(const Step& step) const;
   /// The stages of the interpolant, once the step has been recomputed.
   bool prepare_interpolant(const Step& step);
   double singular_at() const { return singular_at_; }
@@ -83,6 +87,8 @@ class RecomputedSteps {
   /// Recomputes steps at one end of those given, as many as can be taken as one, and joins them; how many, or 0 where
   /// constraints depend on each other.
   std::size_t join(std::span<const Step> steps, From from, Step& joined);
+  /// Those that are joined are to be shorter together, for a while.
+  void join_less(double length);
 
  private:
   /// How far the recomputed end of a step lies from that of the motion, relative to what it moves by.

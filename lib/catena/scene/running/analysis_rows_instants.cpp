@@ -8,7 +8,7 @@
 #include <map>
 
 #include "catena/analysis/dynamics/dynamics_options.hpp"
-#include "catena/analysis/sensitivity/joint_jumps.hpp"
+#include "catena/analysis/sensitivity/moving_instants.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {

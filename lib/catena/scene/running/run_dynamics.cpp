@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "catena/analysis/accuracy/compared_rows.hpp"
@@ -78,6 +79,7 @@ class DynamicsTask {
   void differentiate(AnalysisRows& rows, const Evaluator& evaluator);
   void differentiate(AnalysisRows& rows, Dynamics& analysis) { differentiate(rows, analysis.evaluator()); }
   void differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis);
+  DerivativeAim aim() const;
   /// Whether the motion has contacts, friction or events that act.
   bool changes_itself() const;
   /// Whether instants of the motion itself are to be differentiated.
@@ -200,15 +202,23 @@ DesignModels DynamicsTask::designs() const {
   return models;
 }
 
+DerivativeAim DynamicsTask::aim() const {
+  const std::vector<double> values = context_.models->values(*context_.task.table, context_.seeds);
+  DerivativeAim aim{options_.step > 0 ? std::numeric_limits<double>::infinity() : used_options_.tolerance, {}};
+  for (const int parameter : context_.design->parameters)
+    aim.sizes.push_back(values[static_cast<std::size_t>(parameter)]);
+  return aim;
+}
+
 void DynamicsTask::differentiate(AnalysisRows& rows, const Evaluator& evaluator) {
   if (!context_.design) return;
   const GivenByModel start{context_.state.q.empty(), context_.state.qd.empty()};
   const auto parameters = static_cast<int>(context_.design->names.size());
   const std::string_view obstacle = estimates_ ? "an estimate of the error is wanted" : "";
   if (goes_back(context_, obstacle))
-    rows.differentiate_back(std::make_unique<MotionMeasures>(evaluator, designs(), parameters, start));
+    rows.differentiate_back(std::make_unique<MotionMeasures>(evaluator, designs(), parameters, start, aim()));
   else
-    rows.differentiate(std::make_unique<MotionDerivatives>(evaluator, designs(), parameters, start));
+    rows.differentiate(std::make_unique<MotionDerivatives>(evaluator, designs(), parameters, start, aim()));
 }
 
 bool DynamicsTask::changes_itself() const {
@@ -238,16 +248,15 @@ void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysi
   const auto& measures = context_.task.measures;
   const bool instants = std::any_of(measures.begin(), measures.end(), reads_events);
   const bool back = goes_back(context_, instants ? "instants of events are measured" : "", !only_strikes());
-  const std::vector<double> values = context_.models->values(*context_.task.table, context_.seeds);
-  std::vector<double> sizes;
-  for (const int parameter : context_.design->parameters) sizes.push_back(values[static_cast<std::size_t>(parameter)]);
+  const DerivativeAim aim = this->aim();
   const DesignModels designs = this->designs();
   PhasedDesign design =
-      phased_design(designs, sizes, context_.task,
+      phased_design(designs, aim.sizes, context_.task,
                     context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters), model_,
                     plan_, analysis.plan(), sources);
+  design.aim = aim;
   if (back && only_strikes()) {
-    auto backwards = std::make_unique<MotionMeasures>(analysis.evaluator(), designs, design.parameters, given);
+    auto backwards = std::make_unique<MotionMeasures>(analysis.evaluator(), designs, design.parameters, given, aim);
     backwards->follow(std::move(design.events));
     analysis.witness(backwards.get());
     rows.differentiate_back(std::move(backwards));

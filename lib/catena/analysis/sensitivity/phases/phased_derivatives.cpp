@@ -22,6 +22,7 @@ PhasedDerivatives::PhasedDerivatives(PhasedDesign design, GivenByModel start, st
       events_(std::move(design.events)),
       sizes_(std::move(design.sizes)),
       given_start_(start),
+      aim_(std::move(design.aim)),
       instants_(std::move(rates)),
       stage_(2 * n_),
       y_(2 * n_) {
@@ -222,7 +223,7 @@ void PhasedDerivatives::cover(const MotionStretch& stretch) {
     return;
   }
   for (const double end : part_ends()) {
-    if (!cover_part(stretch, end)) return;
+    if (!cover_in_parts(stretch, end)) return;
   }
   found_.clear();
   if (stretch.ended_by >= 0) find_rates(stretch);

@@ -21,6 +21,7 @@
 #include <memory>
 #include <optional>
 
+#include "catena/analysis/motion/derivative_error.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/phases/phase_equations.hpp"
 #include "catena/analysis/sensitivity/phases/smooth_parts.hpp"
@@ -48,6 +49,7 @@ struct PhasedDesign {
   int parameters = 0;
   std::vector<double> sizes{};  ///< of the parameters: what derivatives are measured by; empty: 1
   std::vector<DesignEvent> events{};
+  DerivativeAim aim{};
 };
 
 class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
@@ -85,6 +87,11 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   bool make_step(double h);
   // Steps in parts: phased_parts.cpp.
   bool cover_part(const MotionStretch& stretch, double to);
+  /// The same, in parts of it where it is too long for derivatives (motion/derivative_error.hpp).
+  bool cover_in_parts(const MotionStretch& stretch, double to);
+  /// How many times what it may the present part misses derivatives.
+  double excess() const;
+  bool undo_part(const MotionStretch& stretch, bool is_first);
   bool go_to_part(double t);
   bool project(double t, Side side, DesignVector Track::*y);
   bool prepare_interpolant();
@@ -128,6 +135,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   std::vector<DesignEvent> events_;
   std::vector<double> sizes_;
   GivenByModel given_start_;
+  DerivativeAim aim_;
   std::shared_ptr<InstantRates> instants_;
   std::unique_ptr<PhaseEquations> equations_;
   MotionPhase phase_;
