@@ -42,8 +42,9 @@ bool Path::March::find_corner(double s, Side& behind) {
     if (2 * std::max(first, second) < turn) return false;
     (first > second ? behind : before) = middle;
   }
-  // Where differences by the parameter do not reach back over the corner.
-  if (!solve_at(before.s + beside_point, behind)) return false;
+  // The tangent is taken where differences by the parameter do not reach back over the corner.
+  if (!solve_at(behind.s + beside_point, middle)) return false;
+  behind.direction = middle.direction;
   PathPoint travel{std::vector<double>(at(path_.plan_->columns)), {}, behind.point.p - before.point.p};
   for (int c = 0; c < path_.plan_->columns; ++c) {
     const std::size_t k = at(path_.plan_->coordinate[at(c)]);
