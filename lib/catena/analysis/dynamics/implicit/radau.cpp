@@ -86,6 +86,7 @@ bool Radau::advance(double limit) {
     if ((h < scale_.smallest_step(t_) && !lands) || failures > most_rejections) return false;
     t_new_ = lands ? limit : t_ + h;
     predict(h);
+    motion_.switches().begin_step(t_);
     if (!prepare(h)) return false;
     const Newton outcome = solve_stages(h);
     if (dips()) {
@@ -103,8 +104,9 @@ bool Radau::advance(double limit) {
       continue;
     }
     sum_up_work(h);
+    switches_ = motion_.switches().found();
     const double error = fixed ? 0 : std::max(error_of_step(h), error_of_work(h));
-    const double allowed = rejected_ ? rough_part * scale_.strict_part() : 1;
+    const double allowed = rejected_ || switches_.cables ? rough_part * scale_.strict_part() : 1;
     if (!(error < allowed)) {
       reject(h, error / allowed);
       continue;

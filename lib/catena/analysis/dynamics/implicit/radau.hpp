@@ -90,6 +90,7 @@ class Radau final : public CrossingIntegrator {
   double h_ = 0, t_new_ = 0, factored_h_ = 0, last_h_ = 0, last_error_ = 0;
   bool linearized_ = false, fresh_ = false, has_stages_ = false, rejected_ = false, first_ = true;
   Smooth smooth_ = Smooth::unknown;  // the last step
+  StepSwitches::Found switches_;     // in the step that is tried
   double convergence_ = 0;
   int corrections_ = 0;
   std::array<std::vector<double>, 3> z_, last_z_, f_, residual_;  // of the stages; of the step before

@@ -168,17 +168,22 @@ void Radau::sum_up_work(double h) {
   }
 }
 
-// The same estimate of the work of loads and of what dampers take, which have no part in J.
+// The same estimate of the work of loads and of what dampers take, which have no part in J; of drivers as
+// RungeKutta::error_of_work asks.
 double Radau::error_of_work(double h) const {
-  if (motion_.works() == 0) return 0;
   const RadauTableau& table = radau_tableau();
+  const std::size_t usual = ErrorScale::judged(motion_.works()).size();
+  const bool of_drivers = switches_.any() && !tells_work();
   double largest = 0;
-  for (const std::size_t place : ErrorScale::judged_integrals) {
+  for (std::size_t place = 0; place < (of_drivers ? motion_.works() : usual); ++place) {
     const std::size_t k = 2 * motion_.coordinates() + place;
     double error = h * slope_[k];
     for (std::size_t i = 0; i < 3; ++i) error += table.error[i] * z_[i][k];
-    largest = std::max(largest, scale_.size_of_work(std::abs(error) / table.real, y_[k], y_[k] + z_[2][k], h,
-                                                    motion_.equations().applied_forces()));
+    error = std::abs(error) / table.real;
+    const bool bends = place < usual ? switches_.laws : switches_.any();
+    if (bends) error = std::max(error, ErrorScale::error_of_switch(h, slope_[k], f_[2][k], z_[2][k]));
+    largest =
+        std::max(largest, scale_.size_of_work(error, y_[k], y_[k] + z_[2][k], h, motion_.equations().applied_forces()));
   }
   return largest;
 }

@@ -158,10 +158,21 @@ void Adams::add_error(std::span<double> error) const {
 double Adams::error_of_work(double h) const {
   const std::size_t n = motion_.coordinates();
   const double once = weights_.integral[k_] / weights_.value[k_] - weights_.integral[k_ + 1] / weights_.value[k_ + 1];
+  const std::size_t usual = ErrorScale::judged(motion_.works()).size();
+  if (usual == 0) return 0;
+  // Of drivers as RungeKutta::error_of_work asks. What the past foretells of a step in which a power bends is wrong by
+  // no more than it differs from the trapezoid rule.
+  const StepSwitches::Found switches = motion_.switches().found();
+  const bool of_drivers = switches.any() && !tells_work();
   double largest = 0;
-  for (const std::size_t place : ErrorScale::judged(motion_.works())) {
-    const double change = slope_[2 * n + place] - predicted_[n + place];
-    largest = std::max(largest, weight_of_work(place, h) * std::abs(once * change));
+  for (std::size_t place = 0; place < (of_drivers ? motion_.works() : usual); ++place) {
+    const std::size_t k = 2 * n + place;
+    double error = std::abs(once * (slope_[k] - predicted_[n + place]));
+    if (place < usual ? switches.laws : switches.any()) {
+      const double work = y_new_[k] - y_[k];
+      error = std::max(error, 2 / h * ErrorScale::error_of_switch(h, difference_[1][n + place], slope_[k], work));
+    }
+    largest = std::max(largest, weight_of_work(place, h) * error);
   }
   return largest;
 }

@@ -46,6 +46,7 @@ bool Adams::try_step(double h) {
   const bool fixed = options_.fixed_step > 0;
   const std::size_t n = motion_.coordinates();
   predict(h);
+  motion_.switches().begin_step(t_);
   if (!motion_.derivative(t_new_, Side::before, y_new_, slope_)) {
     culprit_ = -1;
     fail(h, 1e10, true);

@@ -62,7 +62,7 @@ void CrossingIntegrator::tell_work(double t, double t_before, std::span<const do
 }
 
 void CrossingIntegrator::tell_work_between(double t, std::span<double> y) const {
-  if (!energy_.tells_work(motion_)) return;
+  if (!tells_work()) return;
   EquationsOfMotion& equations = motion_.equations();
   if (!equations.factorize(t, Side::after, motion_.q(std::span<const double>(y)))) return;
   equations.project_position(motion_.q(y), 4);

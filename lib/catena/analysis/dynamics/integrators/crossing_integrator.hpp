@@ -47,6 +47,8 @@ class CrossingIntegrator : public Integrator {
   /// What drivers that move all of the mechanism have done since the end y_before of a step at t_before, by the balance
   /// of energy: into y at t, which is on the constraints.
   void tell_work(double t, double t_before, std::span<const double> y_before, std::span<double> y) const;
+  /// Whether it says so.
+  bool tells_work() const { return energy_.tells_work(motion_); }
   /// The same within the last step, for a y that is near the constraints, from the end of the step.
   void tell_work_between(double t, std::span<double> y) const;
   /// Counts a step across, and says whether the passage lies behind it: then another method may go on.

@@ -109,6 +109,11 @@ class ErrorScale {
     if (error > allowed) allowed = std::max(allowed, work_of_nothing(h, loads));
     return allowed > 0 ? error / allowed : 0;
   }
+  /// What the work done in a step of size h, in which powers go from `begin` to `end`, may be wrong by where a power
+  /// bends within it: 0.36 at most of what it differs from the trapezoid rule by, of order 5 and of Radau.
+  static double error_of_switch(double h, double begin, double end, double work) {
+    return std::abs(work - h / 2 * (begin + end)) / 2;
+  }
   /// The shortest step, s, that may be tried at t: below it time does not advance.
   double smallest_step(double t) const {
     const double moment = rate_ > 0 ? 1 / rate_ : 0;

@@ -9,12 +9,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "catena/analysis/motion/energy_account.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/analysis/motion/step_switches.hpp"
 
 namespace catena {
 
@@ -24,7 +26,8 @@ class Motion {
       : equations_(equations),
         account_(account),
         coordinates_(static_cast<std::size_t>(equations.plan().coordinates())),
-        length_scale_(equations.evaluator().length_scale()) {}
+        length_scale_(equations.evaluator().length_scale()),
+        switches_(std::make_shared<StepSwitches>(equations.evaluator())) {}
 
   /// Entries of q, and of qd.
   std::size_t coordinates() const { return coordinates_; }
@@ -55,6 +58,7 @@ class Motion {
       account_->powers(v, equations_.multipliers(), powers);
       add_losses(powers);
     }
+    switches_->note(t, v);
     return true;
   }
 
@@ -82,6 +86,8 @@ class Motion {
   void set_length_scale(double length) { length_scale_ = length; }
 
   EquationsOfMotion& equations() const { return equations_; }
+  /// What forces do within a step, by its stages; integrators say when one begins.
+  StepSwitches& switches() const { return *switches_; }
   /// Coordinates that can change: the first ones of q and of qd.
   std::size_t moving() const { return 3 * static_cast<std::size_t>(equations_.plan().moving); }
 
@@ -90,6 +96,7 @@ class Motion {
   EnergyAccount* account_;
   std::size_t coordinates_;
   double length_scale_;
+  std::shared_ptr<StepSwitches> switches_;  // of all copies
   double known_t_ = 0, known_for_ = -1;
   std::vector<double> known_;
   double departed_ = 0;

@@ -173,7 +173,8 @@ class RungeKutta final : public Integrator {
   bool crossing_ = false;   // steps are projected that are not elsewhere
   bool work_told_ = false;  // work of drivers in the last step is that of its balance
   std::int64_t projected_steps_ = 0;
-  double step_error_ = 1;  // of the step that is accepted, in tolerances, at least 1
+  StepSwitches::Found switches_;  // in the step that is tried
+  double step_error_ = 1;         // of the step that is accepted, in tolerances, at least 1
 };
 
 }  // namespace catena

@@ -128,7 +128,9 @@ RungeKutta::Trial RungeKutta::try_step(double limit, double& usual) {
   const auto [h, lands] = next_length(limit);
   if ((h < scale_.smallest_step(t_) && !lands) || order_.gives_up()) return Trial::failed;
   t_new_ = lands ? limit : t_ + h;
+  motion_.switches().begin_step(t_);
   if (!evaluate_stages(h)) return cut_short(h);
+  switches_ = motion_.switches().found();
   if (!projects() && ratios_.smallest() < dependence::near_passage)
     return begin_projection() ? Trial::again : Trial::failed;
   const Judgement judged = judge(h);
@@ -136,7 +138,9 @@ RungeKutta::Trial RungeKutta::try_step(double limit, double& usual) {
   const bool doubtful = !is_fixed() && !trials_.project_stages();
   if ((!judged.accurate || doubtful) && projects() && dips() && try_crossing(h, judged)) return Trial::again;
   if (!judged.accurate) {
-    reject(h * std::min(judged.growth, 1.0));
+    // Where a force bends within the step errors fall with its square at best.
+    const double growth = switches_.any() ? step_growth(judged.error, 2) : judged.growth;
+    reject(h * std::min(growth, 1.0));
     return Trial::again;
   }
   step_error_ = std::max(judged.error, 1.0);

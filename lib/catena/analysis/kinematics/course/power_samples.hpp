@@ -11,7 +11,7 @@
 // error for powers of two periods a turn; 0.04 % of 40,000 kinks had ten times more, none above 2e-9 of the power.
 //
 // A pulse between two places is not seen at all. Where a law compares what changes its sign in the stretch, or comes
-// near to zero in between, the stretch counts as not smooth: columns/switches.hpp.
+// near to zero in between, the stretch counts as not smooth: run/law_switches.hpp.
 //
 // Source: J. Berntsen, T. Espelid, Error estimation in automatic quadrature routines, ACM TOMS 17 (1991) 233.
 #pragma once
@@ -21,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include "catena/analysis/run/law_switches.hpp"
 #include "catena/assembly/evaluate.hpp"
 
 namespace catena {
@@ -42,8 +43,7 @@ class PowerSamples {
   bool may_switch() const;
 
  private:
-  const Evaluator* evaluator_ = nullptr;
-  std::vector<int> laws_;  // those that compare
+  LawSwitches laws_;
   std::array<Samples, 2> power_{};
   std::array<std::vector<double>, places> differences_;  // of all comparisons of these laws
 };
