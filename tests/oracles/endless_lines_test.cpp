@@ -45,6 +45,22 @@ TEST(EndlessLines, OfCarriagesThatNothingHolds) {
   expect_no_fault(1, size_of_test(40u, 6u), [](unsigned seed) { return fault_of(seed, false); });
 }
 
+// A body that slides off its curve is held by nothing there: equilibrium and motion name the same cause.
+TEST(EndlessLines, OfABodyThatRunsOffTheEndOfItsCurve) {
+  for (const std::string analysis : {R"("equilibrium")", R"("dynamics", "until": 1)"}) {
+    const TextRun run = run_text(
+        R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"b": {"mass": 1, "inertia": 1, "position": [0.1, 0]}},
+        "constraints": [{"type": "absolute_angle", "i": "b", "value": 0},
+          {"type": "point_on_curve", "name": "c", "i": "ground", "j": "b",
+           "curve": {"spline": {"points": [[0, 0], [0.5, -0.2], [1, -0.3]]}}}],
+        "outputs": ["b.x"], "analyses": [{"type": )" +
+        analysis + "}]}");
+    const Report& report = run.analysis().report;
+    EXPECT_EQ(report.status, Status::singular) << analysis << report.message;
+    EXPECT_NE(report.message.find("its curve is left at its end at (1, -0.3) m"), std::string::npos) << report.message;
+  }
+}
+
 TEST(EndlessLines, AreNotThoseOfCarriagesOnSprings) {
   expect_no_fault(1, 40, [](unsigned seed) { return fault_of(seed, true); });
 }

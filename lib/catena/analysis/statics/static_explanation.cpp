@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/thresholds.hpp"
+#include "catena/analysis/run/watched_elements.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
 #include "catena/analysis/statics/endless_line.hpp"
@@ -73,6 +75,34 @@ std::optional<Report> explain_creeping(StaticSystem& system, const std::vector<d
                 {}};
 }
 
+// A curve or a table that ends holds nothing beyond: `singular`, with the one that was left on the way from the start,
+// as a motion says. Some lengths of the curve beyond its end the foot on it is no longer followed, and is the end: the
+// element is then found nearer to the start.
+Report find_left_end(StaticSystem& system, const std::vector<double>& start) {
+  Evaluator& evaluator = system.evaluator();
+  const WatchedElements watched(evaluator);
+  Report left = watched.check_ends();
+  std::vector<double> places;
+  watched.find_places(places);
+  const auto is_at_end = [](double place) { return place <= 0 || place >= 1; };
+  if (!left.ok() || std::none_of(places.begin(), places.end(), is_at_end)) return left;
+  std::vector<double> there(start);
+  for (std::size_t b = 0; 3 * b + 2 < there.size() && b < evaluator.frames().size(); ++b) {
+    const Frame<double>& f = evaluator.frames()[b];
+    there[3 * b] = f.x, there[3 * b + 1] = f.y, there[3 * b + 2] = f.phi;
+  }
+  const std::vector<double> last = there;
+  const std::vector<CurvePlace> feet = evaluator.curve_places();
+  for (double part = 0.5; left.ok() && part > std::numeric_limits<double>::epsilon(); part /= 2) {
+    for (std::size_t k = 0; k < there.size(); ++k) there[k] = start[k] + part * (last[k] - start[k]);
+    evaluator.set_configuration(there);
+    left = watched.check_ends();
+  }
+  evaluator.go_to_curve_places(feet);
+  evaluator.set_configuration(last);
+  return left;
+}
+
 }  // namespace
 
 std::optional<Report> find_overflow(StaticSystem& system, std::span<double> lambda) {
@@ -96,6 +126,7 @@ std::optional<Report> find_overflow(StaticSystem& system, std::span<double> lamb
 }
 
 Report explain_unbounded(StaticSystem& system, const std::vector<double>& start) {
+  if (Report left = find_left_end(system, start); !left.ok()) return left;
   const Plan& plan = system.plan();
   const std::span<const Frame<double>> frames = system.evaluator().frames();
   int farthest = 0;

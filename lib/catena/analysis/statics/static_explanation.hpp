@@ -13,7 +13,8 @@ namespace catena {
 
 /// Refuses forces and stiffnesses at the system's configuration whose products overflow.
 std::optional<Report> find_overflow(StaticSystem& system, std::span<double> lambda);
-/// The energy falls without end: names the body that has gone farthest from `start`, or turned most.
+/// The energy falls without end: names the body that has gone farthest from `start`, or turned most; or `singular`,
+/// with the element whose curve or table it has left on its way.
 Report explain_unbounded(StaticSystem& system, const std::vector<double>& start);
 /// Refuses one-sided elements beside forces that have no energy; the system has gaps.
 Report refuse_gaps_without_energy(StaticSystem& system);
