@@ -38,6 +38,13 @@ const BadScene elements[] = {
     {"ZeroAxis",
      constraint(R"({"type": "translational", "name": "guide", "i": "ground", "j": "rod", "axis_i": [§0, 0]})"),
      "\"axis_i\" of translational \"guide\" has no direction"},
+    // What follows from a wrong key is no error of its own: the axis has no direction, the gear no radius.
+    {"AxisByName",
+     constraint(R"({"type": "translational", "name": "guide", "i": "ground", "j": "rod", "axis_i": §"x"})"),
+     "must be a list of two numbers"},
+    {"RadiusWithTheUnitOfAForce",
+     constraint(R"({"type": "gear", "i": "crank", "j": "rod", "radius_i": §"1 N", "radius_j": 1})"),
+     "must be a length"},
     {"ZeroDistance", constraint(R"({"type": "absolute_distance", "i": "crank", "ground": [1, 1], "value": §0})"),
      "use absolute_x and absolute_y, or a revolute joint"},
     {"ZeroDistanceGiven", constraint(R"(§{"type": "coupler", "i": ["crank", [0.4, 0]], "j": "rod"})"),

@@ -208,7 +208,7 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
   if constexpr (requires { entry.element.check(); }) {
     if (good) {
       const char* problem = entry.element.check();
-      if (problem && !builder.reported(source.offset)) wrong(source.offset, problem);
+      if (problem && !source.faulty && !builder.reported(source.offset)) wrong(source.offset, problem);
       good = good && !problem;
     }
   }

@@ -73,6 +73,7 @@ class ElementReading {
   }
 
   void read(BlockTemplate& block) {
+    const std::size_t errors = reading_.diagnostics.count();
     find_members();
     read_name();
     read_ends();
@@ -91,6 +92,7 @@ class ElementReading {
       element_.has_at = true;
       reading_.keep(reading_.numbers.read_pair(place_, dimension_of(UnitKind::length), {"at", owner_}));
     }
+    element_.faulty = reading_.diagnostics.count() > errors;
     block.elements.push_back(element_);
   }
 

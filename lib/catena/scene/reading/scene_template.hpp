@@ -136,6 +136,7 @@ struct ElementTemplate {
   NameText name;  ///< may be empty
   std::uint32_t offset = 0;
   ElementKind kind = ElementKind::constraint;
+  bool faulty = false;             ///< an error in its text was reported: what follows from that is not
   bool has_at = false;             ///< its points follow from a place in the ground frame
   short type = 0;                  ///< in element_descriptions()
   std::uint32_t first_number = 0;  ///< first of its slots; after them, if has_at, the place
