@@ -72,6 +72,8 @@ void KinematicsMachine::rebuild(std::shared_ptr<const Model> model, Driven drive
 
 void KinematicsMachine::use_model(std::shared_ptr<const Model> model) {
   rebuild(std::move(model), driven_, stepped_ ? std::optional(analysis_->state()) : std::nullopt);
+  // The row of the present place; where it has none, as at a lock-up, there is no row until a step gives one.
+  if (stepped_) static_cast<void>(go({analysis_->time()}, nullptr));
 }
 
 AnalysisReport KinematicsMachine::run(const TimeGrid& grid, RowObserver& observer) {

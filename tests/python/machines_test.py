@@ -76,6 +76,8 @@ class KinematicsSteps(unittest.TestCase):
         bar.b *= 1.02
         kinematics.set(b=bar.b)
         self.assertEqual(kinematics.parameters["b"], bar.b)
+        # The columns are those of the changed mechanism at once, as after a step.
+        self.assertAlmostEqual(kinematics["coupler.pen.x"], bar.pose(0.4 * bar.speed)[2].real, 10)
         kinematics.move_to(0.4)
         self.assertAlmostEqual(kinematics["coupler.pen.x"], bar.pose(0.4 * bar.speed)[2].real, 10)
         before = kinematics.q.copy()
