@@ -34,6 +34,7 @@ class AccuracyByChoice final : public RowAccuracy {
     return repeats_ ? second_->digits(report) : all;
   }
   std::string why_none() const override { return repeats_ ? second_->why_none() : carried_->why_none(); }
+  std::string doubt() const override { return repeats_ ? second_->doubt() : carried_->doubt(); }
 
  private:
   std::unique_ptr<RowAccuracy> carried_, second_;

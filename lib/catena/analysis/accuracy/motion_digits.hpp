@@ -73,7 +73,8 @@ std::unique_ptr<RowAccuracy> accuracy_of_motion(Analysis& analysis, const Column
     const auto other = make(options);
     other->start_from(start);
     AnalysisReport report = other->run(grid, needs, observer);
-    return SecondRun::Motion{std::move(report), changes_of(*other), MotionRounding(other->evaluator())};
+    return SecondRun::Motion{std::move(report), changes_of(*other), MotionRounding(other->evaluator()),
+                             options.tolerance};
   };
   const auto proceed = [cancel = motion.cancel] { return !(cancel && cancel->load(std::memory_order_relaxed)); };
   const auto first = [&analysis] { return changes_of(analysis); };
@@ -81,8 +82,10 @@ std::unique_ptr<RowAccuracy> accuracy_of_motion(Analysis& analysis, const Column
   const bool may_turn = motion.options.method == IntegrationMethod::automatic && motion.options.may_turn_implicit &&
                         motion.options.step == 0;
   if (!wants_second && !may_turn) return carried_accuracy(analysis, columns, motion.sources);
-  auto runs = std::make_unique<SecondRun>(columns, SecondRun::Runs{first, second, proceed},
-                                          method == IntegrationMethod::baumgarte);
+  const bool is_checked = has_adaptive_implicit_steps(method) && motion.options.step == 0;
+  auto runs = std::make_unique<SecondRun>(
+      columns, SecondRun::Runs{first, second, proceed, is_checked ? motion.options.tolerance : 0},
+      method == IntegrationMethod::baumgarte);
   if (wants_second) return runs;
   return std::make_unique<AccuracyByChoice>(carried_accuracy(analysis, columns, motion.sources), std::move(runs),
                                             turned, is_smooth);

@@ -69,8 +69,9 @@ void SecondRun::take(const Snapshot& snapshot, std::span<const double> values) {
   if (rows_.given++ % rows_.every != 0) return;
   rows_.t.push_back(snapshot.t);
   rows_.values.insert(rows_.values.end(), own.begin(), own.end());
+  if (runs_.tolerance > 0) rows_.places.take(snapshot.q);
   take_motion(snapshot);
-  if (rows_.values.size() > most_numbers) thin_out();
+  if (rows_.values.size() + rows_.places.numbers() > most_numbers) thin_out();
 }
 
 // The rate of a motion is that by which its velocities change, and that by which its bodies turn.
@@ -94,11 +95,13 @@ void SecondRun::thin_out() {
   }
   rows_.t.resize(left);
   rows_.values.resize(left * width);
+  rows_.places.thin_out();
   rows_.every *= 2;
 }
 
 std::vector<double> SecondRun::digits(const AnalysisReport& report) {
   why_.clear();
+  doubt_.clear();
   if (!report.ok() || rows_.t.empty()) return {};
   const double work = static_cast<double>(report.counters.forces) * static_cast<double>(motion_.coordinates);
   if (work > most_work) {
@@ -116,10 +119,11 @@ std::vector<double> SecondRun::digits(const AnalysisReport& report) {
         first.all().size(), most_changes);
     return {};
   }
-  auto other = std::make_unique<OtherRows>(columns_, rows_.every, runs_.proceed);
+  const bool checks = runs_.tolerance > 0;
+  auto other = std::make_unique<OtherRows>(columns_, rows_.every, runs_.proceed, checks);
   Motion second = runs_.second(columns_.needs(), *other, false);
   if (second.report.counters.steps == report.counters.steps) {
-    other = std::make_unique<OtherRows>(columns_, rows_.every, runs_.proceed);
+    other = std::make_unique<OtherRows>(columns_, rows_.every, runs_.proceed, checks);
     second = runs_.second(columns_.needs(), *other, true);
   }
   if (!second.report.ok()) {
@@ -134,6 +138,7 @@ std::vector<double> SecondRun::digits(const AnalysisReport& report) {
     why_ = fmt::format("no digits are claimed: the run beside it has {} rows, not {}", other->given, rows_.given);
     return {};
   }
+  if (checks) compare_with_tolerance(*other, second.tolerance);
   find_jumps(first, second.changes, *other);
   second.rounding.take_rate(motion_.fastest);
   compare(*other, second.rounding, common_rounding(static_cast<double>(report.counters.steps), first.most_of_one()));

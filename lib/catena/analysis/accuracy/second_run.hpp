@@ -24,6 +24,9 @@
 // It is a run more, of about three quarters of the first one's cost; beyond an allowance of most_work nothing is said.
 // Changes that neither run sees, and errors that both have in common, such as a too coarse table of a force, are not
 // in it. Rows are kept until it is over: beyond most_numbers of them every other one, and so on.
+//
+// Where `tolerance` is given, the error of the whole motion is found as well, and doubt() tells where it is more than
+// ten tolerances (tolerance_check.hpp).
 #pragma once
 
 #include <functional>
@@ -33,6 +36,7 @@
 
 #include "catena/analysis/accuracy/motion_changes.hpp"
 #include "catena/analysis/accuracy/motion_rounding.hpp"
+#include "catena/analysis/accuracy/tolerance_check.hpp"
 #include "catena/analysis/dynamics/dynamics_options.hpp"
 #include "catena/analysis/run/row_accuracy.hpp"
 #include "catena/analysis/run/row_observer.hpp"
@@ -50,12 +54,14 @@ class SecondRun final : public RowAccuracy {
     AnalysisReport report;
     MotionChanges changes;
     MotionRounding rounding;
+    double tolerance = 0;
   };
   struct Runs {
     std::function<MotionChanges()> first;  ///< its changes, after it
     /// Makes it, from the same start; with steps of another method where the coarser ones were the same.
     std::function<Motion(const Needs& needs, RowObserver&, bool by_other_method)> second;
     std::function<bool()> proceed;  ///< false: cancelled
+    double tolerance = 0;           ///< of the first one, where its error is told by doubt()
   };
   /// `columns` must outlive this object. `leaves_constraints`: the method does not project onto them.
   SecondRun(const ColumnSet& columns, Runs runs, bool leaves_constraints)
@@ -64,12 +70,14 @@ class SecondRun final : public RowAccuracy {
   void take(const Snapshot& snapshot, std::span<const double> values) override;
   std::vector<double> digits(const AnalysisReport& report) override;
   std::string why_none() const override { return why_; }
+  std::string doubt() const override { return doubt_; }
 
  private:
   class OtherRows;
   /// What of columns may jump where a row lies.
   enum class Jump : unsigned char { none, of_forces, of_rates };
   void thin_out();
+  void compare_with_tolerance(const OtherRows& other, double tolerance);
   void compare(const OtherRows& other, const MotionRounding& rounding, double common);
   void find_jumps(const MotionChanges& first, const MotionChanges& second, const OtherRows& other);
   bool is_judged(UnitKind unit, std::size_t row) const;
@@ -82,10 +90,11 @@ class SecondRun final : public RowAccuracy {
   Runs runs_;
   ColumnErrors errors_;
   bool leaves_constraints_;
-  std::string why_;
+  std::string why_, doubt_;
   struct {
     std::vector<double> t, values;      // of the rows that are kept
     std::int64_t given = 0, every = 1;  // of all rows one in so many is kept
+    ToleranceCheck places;
   } rows_;
   struct {
     double drift = 0, length = 1, rate = 0, fastest = 0, first = 0;  // m, m, 1/s, rad/s, s

@@ -8,6 +8,7 @@
 
 #include "catena/analysis/accuracy/disturbance.hpp"
 #include "catena/analysis/accuracy/second_run_rows.hpp"
+#include "catena/analysis/dynamics/error_estimate.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
@@ -94,6 +95,18 @@ double SecondRun::largest_difference(const OtherRows& other, std::size_t column)
     if (is_judged(columns_.info()[column].unit, row) && difference > largest) largest = difference;
   }
   return largest;
+}
+
+void SecondRun::compare_with_tolerance(const OtherRows& other, double tolerance) {
+  const double apart = rows_.places.largest_difference(other.places, motion_.length);
+  const double multiple = apart / std::abs(tolerance - runs_.tolerance);
+  if (multiple <= EstimatedError::largest_multiple) return;
+  doubt_ = fmt::format(
+      "the motion is off by some {:.2g} tolerances: {:.2g} length scales or rad, by a run at tolerance {:.3g}; errors "
+      "of phase add up, as this method judges each step by itself; give a tolerance of {:.1g}, or another method, "
+      "unless small errors grow fast in this motion",
+      multiple, multiple * runs_.tolerance, tolerance,
+      std::max(DynamicsOptions::least_tolerance, EstimatedError::largest_multiple / 2 * runs_.tolerance / multiple));
 }
 
 // The size of which the rounding of a value is a part: places turn and move with the mechanism, also near zero.

@@ -10,7 +10,6 @@ namespace catena {
 namespace {
 
 constexpr double finer_tolerance_part = 0.1;  // of the tolerance
-constexpr double largest_multiple = 10;       // of the tolerance that an error may come to, as it is calibrated
 
 /// Records a difference and the size of the quantity.
 void note(ErrorOfMotion& kind, double difference, int body, double t) {
@@ -106,7 +105,7 @@ void add_estimate(AnalysisReport& report, const AnalysisReport& asked, const Est
                   fixed ? fmt::format("with steps of {:.6g} s", options.step)
                         : fmt::format("at tolerance {:.3g}", options.tolerance),
                   fixed ? "with steps half as long" : "at a tenth of it"));
-  if (!fixed && error.largest() > largest_multiple * options.tolerance) {
+  if (!fixed && error.largest() > EstimatedError::largest_multiple * options.tolerance) {
     report.warnings.push_back(fmt::format(
         "the estimated error is {:.2g} times the tolerance; likely cause: a motion in which small errors grow fast, "
         "forces that are not smooth, or rounding",

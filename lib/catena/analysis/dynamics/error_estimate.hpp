@@ -30,6 +30,9 @@ struct ErrorOfMotion {
 };
 
 struct EstimatedError {
+  /// Of the tolerance that an error may come to, as methods are calibrated (apps/manual/numerics.md).
+  static constexpr double largest_multiple = 10;
+
   ErrorOfMotion position, angle, velocity, angular_velocity;  ///< m, rad, m/s, rad/s
   double until = 0;                                           ///< s; the last instant at which the two were compared
   double largest() const;                                     ///< relative()

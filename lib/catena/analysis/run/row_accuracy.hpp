@@ -20,6 +20,8 @@ class RowAccuracy {
   virtual std::vector<double> digits(const AnalysisReport& report) = 0;
   /// After digits(): why it says nothing of the columns, or of some, where that is worth a sentence.
   virtual std::string why_none() const { return {}; }
+  /// After digits(): how far the rows are from what was promised, where they are.
+  virtual std::string doubt() const { return {}; }
 };
 
 }  // namespace catena

@@ -210,6 +210,7 @@ void AnalysisRows::finish(AnalysisResult& result) {
   if (accuracy_) {
     result.digits = accuracy_->digits(result.report);
     if (std::string why = accuracy_->why_none(); !why.empty()) result.fields.push_back({"digits_note", std::move(why)});
+    if (std::string doubt = accuracy_->doubt(); !doubt.empty()) result.report.warnings.push_back(std::move(doubt));
   }
   take_rows(result, std::move(info_), rows_);
   for (const std::string& note : columns_.notes()) result.report.warnings.push_back(note);

@@ -73,6 +73,8 @@ class DynamicsTask {
     const AskedMotion motion{sources, context_.state, *grid_, options_, changes, context_.cancel};
     rows.judge(accuracy_of_motion(analysis, rows.columns(), motion, make));
   }
+  /// Says so where the error of a method whose errors of steps add up was not compared with its tolerance.
+  void warn_of_unknown_error();
   /// Runs what was prepared.
   void run_on();
   void run_with_events_or_pauses();
@@ -355,7 +357,16 @@ void DynamicsTask::run() {
     }
   }
   run_on();
+  warn_of_unknown_error();
   if (ways && result_.report.ok()) context_.state.ropes = ways->turns(context_.state);
+}
+
+void DynamicsTask::warn_of_unknown_error() {
+  const bool judges_steps_alone = options_.method == IntegrationMethod::alpha && options_.step == 0;
+  if (!judges_steps_alone || !result_.report.ok() || estimates_ || !result_.digits.empty()) return;
+  result_.report.warnings.push_back(
+      "how many tolerances the motion is off is not known: alpha judges each step by itself, and the second run that "
+      "tells it was not made, or ended otherwise (digits_note); estimate_error tells it, too");
 }
 
 void DynamicsTask::run_on() {
