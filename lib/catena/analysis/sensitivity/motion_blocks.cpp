@@ -1,4 +1,5 @@
-// MotionDerivatives: over steps of the motion and at instants in them by tangents, several steps at a time.
+// MotionDerivatives: over steps of the motion and at instants in them by tangents, several steps at a time; in parts
+// where laws of state switch.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -265,6 +266,63 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
     group.mechanism.set_state(group.q, group.qd);
   }
   return true;
+}
+
+bool MotionDerivatives::take_between(const MotionStretch& stretch, const Step& whole, const Switches& switches) {
+  if (!catch_up(whole.from)) return false;
+  // Functions of time may have jumped where the step begins.
+  if (crossed_ == whole.from) {
+    for (Track& track : tracks_) track.end = track.after;
+  }
+  take_values(whole.begin, &Track::end);
+  has_step_ = false;
+  parts_.clear();
+  double from = whole.from;
+  const auto take = [&](double to) {
+    keep_part();
+    Step part{from, to, {}, to == whole.to ? whole.end : RecomputedSteps::Vector{}};
+    for (const DesignScalar& y : tracks_.front().end) part.begin.push_back(y.v);
+    if (!take_part(part)) return false;
+    from = to;
+    return true;
+  };
+  const auto rate = [](const MotionStretch& some, const auto& f) { return rate_at_end(some, f); };
+  LawSwitches::Carrier carrier{evaluator(), {}, {}, take, [this] { keep_part(); }, rate};
+  for (std::size_t k = 0; k < tracks_.size(); ++k)
+    carrier.groups.push_back({groups()[k].mechanism, tracks_[k].end, DesignVector(2 * n_), at(groups()[k].count)});
+  carrier.find_slopes = [&](double t) {
+    const Side side = t == whole.to ? Side::before : Side::after;
+    if (!factorize(t, side, std::span(tracks_.front().end).first(n_))) return singular(t);
+    for (std::size_t k = 0; k < tracks_.size(); ++k) {
+      if (!derivative(groups()[k], t, side, tracks_[k].end, carrier.groups[k].slope)) return singular(t);
+    }
+    return true;
+  };
+  for (const LawSwitches::Switch& one : switches) {
+    std::string trouble;
+    const std::optional<double> behind = switches_.pass(one, stretch, from, carrier, trouble);
+    if (!behind) return fail(std::move(trouble));
+    from = from_ = to_ = *behind;
+    has_step_ = interpolant_ready_ = false;
+  }
+  return from == whole.to || take(whole.to);
+}
+
+void MotionDerivatives::keep_part() {
+  if (has_step_) between_.push_back({from_, to_, has_step_, interpolant_ready_, tracks_});
+}
+
+void MotionDerivatives::go_to_part(double t) {
+  const auto distance = [t](double from, double to) { return std::max({from - t, t - to, 0.0}); };
+  const auto nearest = std::min_element(between_.begin(), between_.end(), [&](const Between& a, const Between& b) {
+    return distance(a.from, a.to) < distance(b.from, b.to);
+  });
+  if (nearest == between_.end() || distance(from_, to_) <= distance(nearest->from, nearest->to)) return;
+  std::swap(from_, nearest->from);
+  std::swap(to_, nearest->to);
+  std::swap(has_step_, nearest->step);
+  std::swap(interpolant_ready_, nearest->interpolant);
+  std::swap(tracks_, nearest->tracks);
 }
 
 }  // namespace catena

@@ -15,6 +15,7 @@ MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignMod
                                      GivenByModel start, DerivativeAim aim)
     : StateDerivatives(evaluator, models, parameters),
       n_(at(plan().coordinates())),
+      switches_(this->evaluator().model(), plan()),
       system_(evaluator.shared_plan(), SaddleBlock::diagonal),
       given_start_(start),
       aim_(std::move(aim)),
@@ -161,7 +162,8 @@ bool MotionDerivatives::make_step(double h) {
     }
   }
   for (Track& track : tracks_) combine_stages(table.b, h, track.begin, track.stage, track.end);
-  return true;
+  std::string trouble = switches_.trouble_in(from_, to_, tracks_.front().stage);
+  return trouble.empty() || fail(std::move(trouble));
 }
 
 // Values are the motion's own: angles may have been moved by whole turns.
@@ -184,6 +186,8 @@ bool MotionDerivatives::project_end(double t, Side side) {
 // there are as many as may be taken as one; not across an instant at which functions of time jump.
 void MotionDerivatives::cover(const MotionStretch& stretch) {
   if (!why().empty()) return;
+  if (!between_.empty()) go_to_part(stretch.from);
+  between_.clear();
   double looked_at = 0;
   std::optional<Step> step = RecomputedSteps::step_of(stretch, goes_on_ ? &last_end_ : nullptr, looked_at);
   if (!step) {
@@ -194,7 +198,14 @@ void MotionDerivatives::cover(const MotionStretch& stretch) {
   const std::span<const double> y(step->begin);
   const bool tried_elsewhere = std::exchange(started_by_trial_, false) && step->from != to_;
   if ((!started_ || tried_elsewhere) && !start(step->from, y.first(n_), y.subspan(n_))) return;
-  if (!take_watched(*step)) pending_.push_back(*std::move(step));
+  // Tangents have no laws of state.
+  const Switches switches = !tangents_ && switches_.any() ? switches_.find(stretch) : Switches{};
+  take_parts(switches.empty() ? std::vector<double>{} : LawSwitches::part_ends(switches, stretch.to));
+  if (!switches.empty()) {
+    if (!take_between(stretch, *step, switches)) return;
+  } else if (!take_watched(*step)) {
+    pending_.push_back(*std::move(step));
+  }
   const MovingInstant& instant = instant_at(stretch.to);
   goes_on_ = instant.order == 0 && stretch.ended_by < 0;
   if (instant.order == 1 || instant.moves()) {
@@ -289,7 +300,8 @@ bool MotionDerivatives::prepare_interpolant(Group& group, Track& track) {
 bool MotionDerivatives::find(const Snapshot& snapshot) {
   if (!started_ && !start(snapshot.t, snapshot.q, snapshot.qd)) return false;
   if (!why().empty() || !catch_up(snapshot.t)) return false;
-  if (snapshot.t < from_ || snapshot.t > to_) return not_shown(snapshot.t);
+  if (!between_.empty()) go_to_part(snapshot.t);
+  if (between_.empty() && (snapshot.t < from_ || snapshot.t > to_)) return not_shown(snapshot.t);
   if (tangents_ && find_by_tangents(snapshot)) return true;
   const bool inside = has_step_ && snapshot.t != to_ && snapshot.t != from_;
   if (inside && by_tangents_ && !retake_in_dual_numbers()) return false;
@@ -320,6 +332,7 @@ bool MotionDerivatives::find(const Snapshot& snapshot) {
 
 bool MotionDerivatives::find_before(const Snapshot& snapshot) {
   if (crossed_ != snapshot.t || !why().empty()) return false;
+  if (!between_.empty()) go_to_part(snapshot.t);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     const DesignVector& y = tracks_[k].before;
     if (k == 0 && !factorize(snapshot.t, Side::before, std::span(y).first(n_))) return singular(snapshot.t);

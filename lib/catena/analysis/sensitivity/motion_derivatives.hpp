@@ -24,7 +24,8 @@
 //
 // M (qd+ - qd-) + Phi_q^T mu = 0 the blow of drivers whose velocities jump, its partials along q_p- + qd- t*_p.
 // Singular where two functions jump at once that move apart, and where the motion begins at such an instant: no
-// derivatives. An instant at which an event acts is not followed. Source: apps/manual/sensitivity.md; E. Hairer, S.
+// derivatives. An instant at which an event acts is not followed; one at which a law of state switches is
+// (motion/law_switches.hpp). Source: apps/manual/sensitivity.md; E. Hairer, S.
 // Norsett, G. Wanner, Solving Ordinary Differential Equations I, section I.14.
 #pragma once
 
@@ -32,6 +33,7 @@
 #include <optional>
 
 #include "catena/analysis/motion/derivative_error.hpp"
+#include "catena/analysis/motion/law_switches.hpp"
 #include "catena/analysis/motion/stage_watcher.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/design_steps.hpp"
@@ -136,8 +138,16 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
   bool take_state(Group& group, const Snapshot& snapshot, Side side, const DesignVector& y);
   bool singular(double t);
   bool not_shown(double t);
+  // Switches of laws of state: motion_blocks.cpp.
+  using Switches = std::vector<LawSwitches::Switch>;
+  /// Takes a step in parts, between switches.
+  bool take_between(const MotionStretch& stretch, const Step& whole, const Switches& switches);
+  void keep_part();
+  /// Makes the part of the last step nearest to t the present one.
+  void go_to_part(double t);
 
   std::size_t n_;  // coordinates
+  LawSwitches switches_;
   SaddleSystem system_;
   GivenByModel given_start_;
   DerivativeAim aim_;
@@ -148,6 +158,13 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
   std::vector<Track> tracks_;
   std::vector<double> values_;
   DesignVector stage_, y_;
+  /// Of the last step, as its from_, to_ and tracks_ were; all but the present one.
+  struct Between {
+    double from = 0, to = 0;
+    bool step = false, interpolant = false;
+    std::vector<Track> tracks{};
+  };
+  std::vector<Between> between_;
   // By tangents; nullptr where the model does not have them.
   std::unique_ptr<RecomputedSteps> again_;
   std::unique_ptr<MotionTangents> tangents_;

@@ -24,6 +24,7 @@ PhasedDerivatives::PhasedDerivatives(PhasedDesign design, GivenByModel start, st
       given_start_(start),
       aim_(std::move(design.aim)),
       instants_(std::move(rates)),
+      switches_(evaluator().model(), plan()),
       stage_(2 * n_),
       y_(2 * n_) {
   equations_ = std::make_unique<PhaseEquations>(evaluator(), contacts_);
@@ -171,7 +172,8 @@ bool PhasedDerivatives::make_step(double h) {
     }
   }
   for (Track& track : tracks_) combine_stages(table.b, h, track.begin, track.stage, track.end);
-  return true;
+  std::string trouble = switches_.trouble_in(from_, to_, tracks_.front().stage);
+  return trouble.empty() || fail(std::move(trouble));
 }
 
 // Values are the motion's own: angles may have been moved by whole turns.
@@ -217,14 +219,12 @@ void PhasedDerivatives::cover(const MotionStretch& stretch) {
   parts_.clear();
   has_.step = false;
   to_ = stretch.from;
-  take_parts(smooth_parts(stretch, power_places(contacts_, phase_.states, places_)));
-  if (part_ends().empty()) {
+  const std::vector<double> ends = smooth_parts(stretch, power_places(contacts_, phase_.states, places_));
+  if (ends.empty()) {
     not_shown(stretch.to);
     return;
   }
-  for (const double end : part_ends()) {
-    if (!cover_in_parts(stretch, end)) return;
-  }
+  if (!cover_between(stretch, ends, switches_.any() ? switches_.find(stretch) : Switches{})) return;
   found_.clear();
   if (stretch.ended_by >= 0) find_rates(stretch);
   const MovingInstant& instant = instant_at(to_);

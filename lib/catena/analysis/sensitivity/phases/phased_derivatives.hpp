@@ -22,6 +22,7 @@
 #include <optional>
 
 #include "catena/analysis/motion/derivative_error.hpp"
+#include "catena/analysis/motion/law_switches.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/phases/phase_equations.hpp"
 #include "catena/analysis/sensitivity/phases/smooth_parts.hpp"
@@ -93,6 +94,11 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   double excess() const;
   bool undo_part(const MotionStretch& stretch, bool is_first);
   bool go_to_part(double t);
+  void keep_part();
+  // Switches of laws of state: phased_switches.cpp.
+  using Switches = std::vector<LawSwitches::Switch>;
+  /// Covers the parts of a stretch that end there, between switches.
+  bool cover_between(const MotionStretch& stretch, std::span<const double> ends, const Switches& switches);
   bool project(double t, Side side, DesignVector Track::*y);
   bool prepare_interpolant();
   /// Before the crossing there, if the step ends with one.
@@ -138,6 +144,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   DerivativeAim aim_;
   std::shared_ptr<InstantRates> instants_;
   std::unique_ptr<PhaseEquations> equations_;
+  LawSwitches switches_;
   MotionPhase phase_;
   std::vector<Track> tracks_;
   struct {
@@ -149,6 +156,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
     double from = 0, to = 0;
     bool has_interpolant = false;
     std::vector<Track> tracks;
+    bool has_step = true;
   };
   std::vector<Part> parts_;
   std::optional<double> crossed_;      // where functions of time jumped last

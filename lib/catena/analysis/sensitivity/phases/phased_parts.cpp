@@ -9,7 +9,7 @@ namespace catena {
 
 // The next part of the step, behind those that have been covered.
 bool PhasedDerivatives::cover_part(const MotionStretch& stretch, double to) {
-  if (has_.step) parts_.push_back({from_, to_, has_.interpolant, tracks_});
+  keep_part();
   for (Track& track : tracks_) track.begin = track.end;
   from_ = to_;
   to_ = to;
@@ -63,15 +63,27 @@ bool PhasedDerivatives::cover_in_parts(const MotionStretch& stretch, double to) 
   return true;
 }
 
-// Makes the part in which t lies the present one; false where there is none.
+void PhasedDerivatives::keep_part() {
+  if (has_.step) parts_.push_back({from_, to_, has_.interpolant, tracks_});
+}
+
+// Makes the part in which t lies the present one, or that beside it where a law switches; false where there is none.
 bool PhasedDerivatives::go_to_part(double t) {
-  const auto holds = [t](double from, double to) { return t >= from && t <= to; };
-  if (holds(from_, to_)) return true;
-  const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const Part& p) { return holds(p.from, p.to); });
-  if (found == parts_.end()) return false;
+  const auto distance = [t](double from, double to) { return std::max({from - t, t - to, 0.0}); };
+  if (distance(from_, to_) == 0) return true;
+  if (std::none_of(parts_.begin(), parts_.end(), [&](const Part& p) { return (p.from <= t) != (from_ <= t); })) {
+    // All parts are on one side.
+    if (std::none_of(parts_.begin(), parts_.end(), [&](const Part& p) { return distance(p.from, p.to) == 0; }))
+      return false;
+  }
+  const auto found = std::min_element(parts_.begin(), parts_.end(), [&](const Part& a, const Part& b) {
+    return distance(a.from, a.to) < distance(b.from, b.to);
+  });
+  if (distance(from_, to_) <= distance(found->from, found->to)) return true;
   std::swap(from_, found->from);
   std::swap(to_, found->to);
   std::swap(has_.interpolant, found->has_interpolant);
+  std::swap(has_.step, found->has_step);
   std::swap(tracks_, found->tracks);
   return true;
 }
