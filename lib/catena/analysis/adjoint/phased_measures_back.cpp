@@ -194,17 +194,20 @@ bool PhasedMeasures::go_back_over(std::size_t& k, std::span<const Look>& looks) 
   for (Group& group : groups()) group.mechanism.go_to_curve_places(step.places);
   if (!recompute(step, inside)) return false;
   const double h = step.to - step.from;
-  const bool checks = aim_.divides() && (checks_.is_due(h, begun()) || (inside && begun() < ways_.size()));
-  const std::vector<Way> ways_before = checks ? ways_ : std::vector<Way>();
+  const auto is_due = [&] { return aim_.divides() && checks_.is_due(h, begun()); };
+  // Measures may begin inside.
+  const bool may_check = is_due() || (aim_.divides() && inside && begun() < ways_.size());
+  const std::vector<Way> ways_before = may_check ? ways_ : std::vector<Way>();
   const std::span<const Look> looks_before = looks;
   for (Way& way : ways_) {
     std::fill(way.y0.begin(), way.y0.end(), 0.0);
     if (inside) way.slopes.assign(dormand_prince_8().c.size(), Vector(2 * n_, 0.0));
-    if (checks) way.errors.fill(std::vector<Vector>(at(dormand_prince_8().stages), Vector(2 * n_, 0.0)));
+    if (may_check) way.errors.fill(std::vector<Vector>(at(dormand_prince_8().stages), Vector(2 * n_, 0.0)));
   }
   while (!looks.empty() && looks.back().t > step.from) {
     if (!add_inside(step, take_last(looks))) return false;
   }
+  const bool checks = is_due();
   if (!stages_back(step, inside, checks)) return false;
   const double missed = checks ? excess() : 0;
   if (missed > 1) {

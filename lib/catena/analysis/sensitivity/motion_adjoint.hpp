@@ -136,8 +136,8 @@ class MotionAdjoint : public StateDerivatives {
   double excess(const Step& step, const Way& way);
   /// Of y0^ by one embedded error: of positions and velocities, in parts of y^.
   double error_back(double h, const StageSum& error, const Way& way);
-  /// Whether it is to be looked at in a step of this length; `inside`: pulses lie in it.
-  bool is_due(double h, bool inside) const;
+  /// Whether it is to be looked at in a step of this length.
+  bool is_due(double h) const;
   std::size_t begun() const;
   void add_parameters(double t, Side side, const AdjointWeights& weights, std::span<const double> qdd, Way& way);
   /// What pulses at an instant with this state add to y^ there.

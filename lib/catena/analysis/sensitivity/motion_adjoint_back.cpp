@@ -147,8 +147,9 @@ bool MotionAdjoint::go_back_over_block(std::size_t& k, std::span<const Look>& lo
   if (count == 0) return singular();
   static_cast<void>(end_stage());  // after the first stage, which has been evaluated now
   const double h = joined.to - joined.from;
-  const bool checks = is_due(h, inside);
-  const std::vector<Way> ways = checks ? ways_ : std::vector<Way>();
+  // Measures may begin inside.
+  const bool may_check = is_due(h) || (aim_.divides() && inside && begun() < ways_.size());
+  const std::vector<Way> ways = may_check ? ways_ : std::vector<Way>();
   const std::span<const Look> looks_before = looks;
   for (Way& way : ways_) {
     std::fill(way.y0.begin(), way.y0.end(), 0.0);
@@ -159,6 +160,7 @@ bool MotionAdjoint::go_back_over_block(std::size_t& k, std::span<const Look>& lo
     if (!add_inside(joined, take_last(looks))) return false;
   }
   if (!factorize_end(joined.to, Side::before, joined.end)) return false;
+  const bool checks = is_due(h);
   double missed = 0;
   for (Way& way : ways_) {
     if (!way.begun) continue;

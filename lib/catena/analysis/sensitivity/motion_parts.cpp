@@ -99,10 +99,7 @@ bool MotionDerivatives::return_to_part(double t) {
   return take_part(parts_[k].step);
 }
 
-bool MotionAdjoint::is_due(double h, bool inside) const {
-  if (!aim_.divides()) return false;
-  return bends_ || checks_.is_due(h, begun()) || (inside && begun() < ways_.size());
-}
+bool MotionAdjoint::is_due(double h) const { return aim_.divides() && (bends_ || checks_.is_due(h, begun())); }
 
 std::size_t MotionAdjoint::begun() const {
   return at(static_cast<int>(std::count_if(ways_.begin(), ways_.end(), [](const Way& way) { return way.begun; })));
