@@ -287,7 +287,7 @@ bool MotionDerivatives::take_between(const MotionStretch& stretch, const Step& w
     return true;
   };
   const auto rate = [](const MotionStretch& some, const auto& f) { return rate_at_end(some, f); };
-  LawSwitches::Carrier carrier{evaluator(), {}, {}, take, [this] { keep_part(); }, rate};
+  SwitchInstants::Carrier carrier{evaluator(), {}, {}, take, [this] { keep_part(); }, rate};
   for (std::size_t k = 0; k < tracks_.size(); ++k)
     carrier.groups.push_back({groups()[k].mechanism, tracks_[k].end, DesignVector(2 * n_), at(groups()[k].count)});
   carrier.find_slopes = [&](double t) {
@@ -298,7 +298,7 @@ bool MotionDerivatives::take_between(const MotionStretch& stretch, const Step& w
     }
     return true;
   };
-  for (const LawSwitches::Switch& one : switches) {
+  for (const SwitchInstants::Switch& one : switches) {
     std::string trouble;
     const std::optional<double> behind = switches_.pass(one, stretch, from, carrier, trouble);
     if (!behind) return fail(std::move(trouble));

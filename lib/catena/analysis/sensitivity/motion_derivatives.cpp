@@ -200,7 +200,7 @@ void MotionDerivatives::cover(const MotionStretch& stretch) {
   if ((!started_ || tried_elsewhere) && !start(step->from, y.first(n_), y.subspan(n_))) return;
   // Tangents have no laws of state.
   const Switches switches = !tangents_ && switches_.any() ? switches_.find(stretch) : Switches{};
-  take_parts(switches.empty() ? std::vector<double>{} : LawSwitches::part_ends(switches, stretch.to));
+  take_parts(switches.empty() ? std::vector<double>{} : SwitchInstants::part_ends(switches, stretch.to));
   if (!switches.empty()) {
     if (!take_between(stretch, *step, switches)) return;
   } else if (!take_watched(*step)) {

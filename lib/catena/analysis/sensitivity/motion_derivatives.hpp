@@ -25,7 +25,7 @@
 // M (qd+ - qd-) + Phi_q^T mu = 0 the blow of drivers whose velocities jump, its partials along q_p- + qd- t*_p.
 // Singular where two functions jump at once that move apart, and where the motion begins at such an instant: no
 // derivatives. An instant at which an event acts is not followed; one at which a law of state switches is
-// (motion/law_switches.hpp). Source: apps/manual/sensitivity.md; E. Hairer, S.
+// (motion/switch_instants.hpp). Source: apps/manual/sensitivity.md; E. Hairer, S.
 // Norsett, G. Wanner, Solving Ordinary Differential Equations I, section I.14.
 #pragma once
 
@@ -33,8 +33,8 @@
 #include <optional>
 
 #include "catena/analysis/motion/derivative_error.hpp"
-#include "catena/analysis/motion/law_switches.hpp"
 #include "catena/analysis/motion/stage_watcher.hpp"
+#include "catena/analysis/motion/switch_instants.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/analysis/sensitivity/motion_tangents.hpp"
@@ -139,7 +139,7 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
   bool singular(double t);
   bool not_shown(double t);
   // Switches of laws of state: motion_blocks.cpp.
-  using Switches = std::vector<LawSwitches::Switch>;
+  using Switches = std::vector<SwitchInstants::Switch>;
   /// Takes a step in parts, between switches.
   bool take_between(const MotionStretch& stretch, const Step& whole, const Switches& switches);
   void keep_part();
@@ -147,7 +147,7 @@ class MotionDerivatives final : public StateDerivatives, private StageWatcher {
   void go_to_part(double t);
 
   std::size_t n_;  // coordinates
-  LawSwitches switches_;
+  SwitchInstants switches_;
   SaddleSystem system_;
   GivenByModel given_start_;
   DerivativeAim aim_;

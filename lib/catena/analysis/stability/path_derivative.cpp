@@ -16,14 +16,11 @@ namespace {
 // Of a step of central differences, in parts of the parameter: near the third root of epsilon, 6e-6, rounding and the
 // third derivative make errors of one size.
 constexpr double difference = 1e-5;
-// Sides that differ by more have a kink between them: those of a smooth load differ by some 1e-5. The shortest step in
-// parts of the usual one: rounding is 1e-7 of the derivative there.
-constexpr double kinked = 0.01, rounded_difference = 1e-4;
 
 }  // namespace
 
 double PathSystem::parameter_step(const PathPoint& x, bool closely) const {
-  return (closely ? rounded_difference : 1) * difference * std::max(scale_, std::abs(x.p));
+  return (closely ? shortest_arc : difference) * std::max(scale_, std::abs(x.p));
 }
 
 // By central differences over a step h, one-sided where the scene ends. How much the sides differ, in parts of the two.
@@ -54,6 +51,8 @@ double PathSystem::difference_over(const PathPoint& x, double h, std::vector<dou
 void PathSystem::parameter_derivative(const PathPoint& x, std::vector<double>& derivative) {
   derivative.resize(given_.size());
   double h = parameter_step(x, false);
+  // Sides of a smooth load differ by some 1e-5, those of a kink by a part of themselves: half way between in size.
+  const double kinked = std::sqrt(difference);
   if (difference_over(x, h, derivative) <= kinked) return;
   // A load has a kink within the step, as where a cable becomes taut, or an extreme: a shorter step tells which, down
   // to one at which rounding is as large as what the first one mixed up.

@@ -24,8 +24,6 @@
 
 namespace catena {
 
-/// Where no longer step can be made the path ends, and corners are located to this; in the units of options.arc.
-inline constexpr double shortest_arc = 1e-9;
 /// The cosine between the directions at both ends of a step, at least.
 inline constexpr double largest_bend = 0.9;
 

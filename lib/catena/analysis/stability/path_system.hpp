@@ -49,6 +49,8 @@ struct PathStability {
 /// Of a step, or of the parameter's range: so far beside a point a path is looked at. Effects are above rounding there,
 /// the bend of the path below it.
 inline constexpr double beside_point = 1e-6;
+/// Where no longer step can be made the path ends, and corners are located to this; in the units of beside_point.
+inline constexpr double shortest_arc = 1e-9;
 
 class PathSystem {
  public:

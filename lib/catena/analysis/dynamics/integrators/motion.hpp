@@ -16,7 +16,7 @@
 
 #include "catena/analysis/motion/energy_account.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
-#include "catena/analysis/motion/step_switches.hpp"
+#include "catena/analysis/run/step_switches.hpp"
 
 namespace catena {
 

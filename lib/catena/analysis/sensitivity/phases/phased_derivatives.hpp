@@ -22,7 +22,7 @@
 #include <optional>
 
 #include "catena/analysis/motion/derivative_error.hpp"
-#include "catena/analysis/motion/law_switches.hpp"
+#include "catena/analysis/motion/switch_instants.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/phases/phase_equations.hpp"
 #include "catena/analysis/sensitivity/phases/smooth_parts.hpp"
@@ -96,7 +96,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   bool go_to_part(double t);
   void keep_part();
   // Switches of laws of state: phased_switches.cpp.
-  using Switches = std::vector<LawSwitches::Switch>;
+  using Switches = std::vector<SwitchInstants::Switch>;
   /// Covers the parts of a stretch that end there, between switches.
   bool cover_between(const MotionStretch& stretch, std::span<const double> ends, const Switches& switches);
   bool project(double t, Side side, DesignVector Track::*y);
@@ -144,7 +144,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   DerivativeAim aim_;
   std::shared_ptr<InstantRates> instants_;
   std::unique_ptr<PhaseEquations> equations_;
-  LawSwitches switches_;
+  SwitchInstants switches_;
   MotionPhase phase_;
   std::vector<Track> tracks_;
   struct {

@@ -7,7 +7,7 @@ namespace catena {
 bool PhasedDerivatives::cover_between(const MotionStretch& stretch, std::span<const double> ends,
                                       const Switches& switches) {
   const auto rate = [](const MotionStretch& some, const auto& f) { return rate_at_end(some, f); };
-  LawSwitches::Carrier carrier{evaluator(), {}, {}, {}, [this] { keep_part(); }, rate};
+  SwitchInstants::Carrier carrier{evaluator(), {}, {}, {}, [this] { keep_part(); }, rate};
   for (std::size_t k = 0; k < tracks_.size(); ++k)
     carrier.groups.push_back({groups()[k].mechanism, tracks_[k].end, DesignVector(2 * n_), at(groups()[k].count)});
   carrier.find_slopes = [&](double t) {

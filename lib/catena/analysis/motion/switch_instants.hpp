@@ -29,10 +29,10 @@
 
 namespace catena {
 
-class LawSwitches {
+class SwitchInstants {
  public:
   using Vector = std::vector<DesignScalar>;
-  LawSwitches(const Model& model, const Plan& plan);
+  SwitchInstants(const Model& model, const Plan& plan);
 
   bool any() const { return columns_.has_value(); }
   /// Instants that are one to rounding are one switch, of all these columns.

@@ -1,4 +1,4 @@
-#include "catena/analysis/motion/step_switches.hpp"
+#include "catena/analysis/run/step_switches.hpp"
 
 #include <algorithm>
 #include <numeric>

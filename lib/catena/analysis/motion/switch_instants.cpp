@@ -1,4 +1,4 @@
-#include "catena/analysis/motion/law_switches.hpp"
+#include "catena/analysis/motion/switch_instants.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ namespace {
 int law_of_switch(const std::string& name) { return name.starts_with("law ") ? std::stoi(name.substr(4)) : -1; }
 
 /// Of accelerations, the largest of all coordinates, in parts of their size.
-double change_of_slopes(const LawSwitches::Vector& before, const LawSwitches::Vector& behind) {
+double change_of_slopes(const SwitchInstants::Vector& before, const SwitchInstants::Vector& behind) {
   double change = 0, size = 0;
   for (std::size_t i = before.size() / 2; i < before.size(); ++i) {
     change = std::max(change, std::abs(behind[i].v - before[i].v));
@@ -34,7 +34,7 @@ double change_of_slopes(const LawSwitches::Vector& before, const LawSwitches::Ve
 
 }  // namespace
 
-LawSwitches::LawSwitches(const Model& model, const Plan& plan) : model_(model) {
+SwitchInstants::SwitchInstants(const Model& model, const Plan& plan) : model_(model) {
   std::vector<std::string> names = switches_of_loads(model, {}, true);
   // Cables and ropes are places that press (cable_kinks.hpp).
   std::erase_if(names, [](const std::string& name) { return name.find(" switch ") == std::string::npos; });
@@ -43,7 +43,7 @@ LawSwitches::LawSwitches(const Model& model, const Plan& plan) : model_(model) {
   for (const ColumnInfo& info : columns_->info()) laws_.push_back(law_of_switch(info.name));
 }
 
-std::vector<LawSwitches::Switch> LawSwitches::find(const MotionStretch& stretch) const {
+std::vector<SwitchInstants::Switch> SwitchInstants::find(const MotionStretch& stretch) const {
   std::vector<Switch> found;
   const std::size_t count = columns_->size();
   std::vector<double> last(count), now(count), g(count);
@@ -99,15 +99,15 @@ std::vector<LawSwitches::Switch> LawSwitches::find(const MotionStretch& stretch)
   return joined;
 }
 
-std::vector<double> LawSwitches::part_ends(const std::vector<Switch>& switches, double to) {
+std::vector<double> SwitchInstants::part_ends(const std::vector<Switch>& switches, double to) {
   std::vector<double> ends;
   for (const Switch& one : switches) ends.push_back(one.behind);
   ends.push_back(to);
   return ends;
 }
 
-std::vector<DesignScalar> LawSwitches::values(DesignMechanism& mechanism, const Snapshot& there,
-                                              const Vector& y) const {
+std::vector<DesignScalar> SwitchInstants::values(DesignMechanism& mechanism, const Snapshot& there,
+                                                 const Vector& y) const {
   const std::size_t n = y.size() / 2;
   std::vector<DesignScalar> values(columns_->size());
   mechanism.set_state(std::span(y).first(n), std::span(y).subspan(n));
@@ -115,7 +115,7 @@ std::vector<DesignScalar> LawSwitches::values(DesignMechanism& mechanism, const 
   return values;
 }
 
-LawSwitches::Rates LawSwitches::look(const Switch& one, double t, double length, Carrier& carrier) const {
+SwitchInstants::Rates SwitchInstants::look(const Switch& one, double t, double length, Carrier& carrier) const {
   DesignMechanism& mechanism = carrier.groups.front().mechanism;
   const Vector &y = carrier.groups.front().y, &slope = carrier.groups.front().slope;
   Vector still(y), along(y);
@@ -154,8 +154,8 @@ LawSwitches::Rates LawSwitches::look(const Switch& one, double t, double length,
   return rates;
 }
 
-std::optional<double> LawSwitches::pass(const Switch& one, const MotionStretch& stretch, double from, Carrier& carrier,
-                                        std::string& trouble) const {
+std::optional<double> SwitchInstants::pass(const Switch& one, const MotionStretch& stretch, double from,
+                                           Carrier& carrier, std::string& trouble) const {
   const double length = stretch.to - stretch.from;
   double bound = one.behind - from, distance = 0, least = 0;
   Rates before;
@@ -202,9 +202,9 @@ std::optional<double> LawSwitches::pass(const Switch& one, const MotionStretch& 
   return behind;
 }
 
-std::optional<std::vector<double>> LawSwitches::instant(const Switch& one, double t, const Rates& before,
-                                                        const Rates& behind, double change,
-                                                        std::string& trouble) const {
+std::optional<std::vector<double>> SwitchInstants::instant(const Switch& one, double t, const Rates& before,
+                                                           const Rates& behind, double change,
+                                                           std::string& trouble) const {
   if (change <= thresholds::no_force) return std::vector<double>{};
   std::vector<double> instant;
   std::string_view what;
@@ -232,7 +232,7 @@ std::optional<std::vector<double>> LawSwitches::instant(const Switch& one, doubl
 
 // Where the motion's tolerance allows a step over a jump all else changes in it by less than a hundredth of that. Less
 // than a thousandth of all accelerations may as well be what begins to move in a long chain, like a high power of time.
-std::string LawSwitches::trouble_in(double from, double to, const std::vector<Vector>& stages) const {
+std::string SwitchInstants::trouble_in(double from, double to, const std::vector<Vector>& stages) const {
   if (model_.laws.empty()) return {};
   const Tableau& table = dormand_prince_8();
   std::vector<std::size_t> order(at(table.stages));
@@ -259,7 +259,7 @@ std::string LawSwitches::trouble_in(double from, double to, const std::vector<Ve
   return {};
 }
 
-std::string LawSwitches::name(const Switch& one) const {
+std::string SwitchInstants::name(const Switch& one) const {
   for (const std::size_t column : one.columns) {
     if (laws_[column] >= 0) return describe_law(model_, laws_[column]);
   }
