@@ -178,7 +178,7 @@ std::vector<double> Equations::given_configuration() const {
 
 Pose Equations::given_pose() const {
   Pose pose;
-  pose.starts.resize(at(plan_->contacts));
+  pose.starts.resize(at(plan_->in_pose.contacts));
   take_given_contacts(*plan_, model_->constraints, pose.starts);
   place_bodies(pose);
   pose.contacts = pose.starts;
@@ -208,15 +208,15 @@ void Equations::place_bodies(Pose& pose) const {
 }
 
 void Equations::spread_constants(Pose& pose) const {
-  pose.values.resize(at(plan_->values));
+  pose.values.resize(at(plan_->in_pose.values));
   for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
     if constexpr (ElementOf<decltype(list)>::functions > 0) {
       for (int e = 0; e < block.size(); ++e)
         pose.values[at(block.first_value + e)] = {list[at(block.entry[at(e)])].values[0].constant, 0, 0};
     }
   });
-  pose.load_rates.assign(at(plan_->loads), 0.0);
-  pose.loads.resize(at(plan_->loads));
+  pose.load_rates.assign(at(plan_->in_pose.loads), 0.0);
+  pose.loads.resize(at(plan_->in_pose.loads));
   for_each_list(plan_->forces, model_->forces, [&](const auto& block, const auto& list, int) {
     auto next = pose.loads.begin() + block.first_value;
     for (int k : block.entry) {

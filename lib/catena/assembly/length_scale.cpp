@@ -163,6 +163,51 @@ double mean_gyration(const Model& model) {
   return count > 0 ? sum / count : 0;
 }
 
+/// Distances of points from the centroid of their body.
+struct PointRadii {
+  double squares = 0, sum = 0;
+  int count = 0;
+  void add(double square) {
+    squares += square;
+    sum += std::sqrt(square);
+    ++count;
+  }
+};
+
+/// By plan body: points of constraints, and of force elements and what acts like them; whether curves touch it.
+struct AttachedRadii {
+  std::vector<PointRadii> held, forced;
+  std::vector<char> on_curve;
+  PointRadii all;  // of constraints
+
+  AttachedRadii(const Model& model, const Plan& plan)
+      : held(at(plan.bodies)), forced(held.size()), on_curve(held.size(), 0) {
+    for_each_list(model.constraints, [&](const auto& list, int) {
+      for (const auto& entry : list) {
+        const bool pulls = is_elastic_gap(model, entry);
+        visit_points(entry, [&](const Vec2<double>& local, int body) {
+          if (body < 0) return;
+          const double square = squared_norm(local);
+          (pulls ? forced : held)[at(plan.plan_body[at(body)])].add(square);
+          if (!pulls) all.add(square);
+        });
+        if constexpr (HasCurve<ElementOf<decltype(list)>>) {
+          for (const int body : {entry.i, entry.j}) {
+            if (body >= 0) on_curve[at(plan.plan_body[at(body)])] = 1;
+          }
+        }
+      }
+    });
+    for_each_list(model.forces, [&](const auto& list, int) {
+      for (const auto& entry : list) {
+        visit_points(entry, [&](const Vec2<double>& local, int body) {
+          if (body >= 0) forced[at(plan.plan_body[at(body)])].add(squared_norm(local));
+        });
+      }
+    });
+  }
+};
+
 }  // namespace
 
 double given_length(const Model& model) {
@@ -189,61 +234,27 @@ bool lacks_length(const Equations& equations) {
 // it hangs together with, or the length scale. Every length comes from the scene, and from the same mechanism: what
 // stands beside it does not change where it is assembled.
 std::vector<double> Equations::attachment_radii(double* mean) const {
-  struct Points {
-    double squares = 0, sum = 0;
-    int count = 0;
-    void add(double square) {
-      squares += square;
-      sum += std::sqrt(square);
-      ++count;
-    }
-  };
-  std::vector<Points> held(at(plan_->bodies)), forced(at(plan_->bodies));
-  std::vector<char> on_curve(held.size(), 0);
-  Points all;
-  for_each_list(model_->constraints, [&](const auto& list, int) {
-    for (const auto& entry : list) {
-      const bool pulls = is_elastic_gap(*model_, entry);
-      visit_points(entry, [&](const Vec2<double>& local, int body) {
-        if (body < 0) return;
-        const double square = squared_norm(local);
-        (pulls ? forced : held)[at(plan_->plan_body[at(body)])].add(square);
-        if (!pulls) all.add(square);
-      });
-      if constexpr (HasCurve<ElementOf<decltype(list)>>) {
-        for (const int body : {entry.i, entry.j}) {
-          if (body >= 0) on_curve[at(plan_->plan_body[at(body)])] = 1;
-        }
-      }
-    }
-  });
-  for_each_list(model_->forces, [&](const auto& list, int) {
-    for (const auto& entry : list) {
-      visit_points(entry, [&](const Vec2<double>& local, int body) {
-        if (body >= 0) forced[at(plan_->plan_body[at(body)])].add(squared_norm(local));
-      });
-    }
-  });
-  std::vector<double> radius(held.size(), 0.0);
+  const AttachedRadii points(*model_, *plan_);
+  std::vector<double> radius(points.held.size(), 0.0);
   bool lacks = false;
   for (std::size_t b = 0; b < radius.size(); ++b) {
-    const Points& of = held[b].squares > 0 ? held[b] : forced[b];
+    const PointRadii& of = points.held[b].squares > 0 ? points.held[b] : points.forced[b];
     if (of.squares > 0) radius[b] = std::sqrt(of.squares / of.count);
     lacks = lacks || (radius[b] == 0 && !model_->bodies[at(plan_->model_body[b])].particle);
   }
   if (lacks) {
     const std::vector<std::vector<int>> groups = separate_groups(*model_);
     for (const std::vector<int>& group : groups) {
-      Points own;
+      PointRadii own;
       for (const int body : group) {
-        const Points& of = held[at(plan_->plan_body[at(body)])];
+        const PointRadii& of = points.held[at(plan_->plan_body[at(body)])];
         own.sum += of.sum;
         own.count += of.count;
       }
       if (own.sum == 0) {
         // Held by curves alone: as where nothing stands beside it.
         const bool curves = std::any_of(group.begin(), group.end(),
-                                        [&](int body) { return on_curve[at(plan_->plan_body[at(body)])] != 0; });
+                                        [&](int body) { return points.on_curve[at(plan_->plan_body[at(body)])] != 0; });
         if (curves && groups.size() > 1)
           own = {.sum = length_without_joints(part_of(*model_, group).model), .count = 1};
         if (own.sum == 0) continue;
@@ -257,7 +268,7 @@ std::vector<double> Equations::attachment_radii(double* mean) const {
   for (double& r : radius) {
     if (r == 0) r = length_scale_;
   }
-  if (mean) *mean = all.count > 0 ? all.sum / all.count : 0;
+  if (mean) *mean = points.all.count > 0 ? points.all.sum / points.all.count : 0;
   return radius;
 }
 

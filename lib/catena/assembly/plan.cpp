@@ -81,11 +81,11 @@ template <class E>
 void number_rows(const Model& model, const std::vector<ElementEntry<E, double>>& list, ConstraintBlock<E>& block,
                  Plan& plan) {
   block.first_row = plan.rows;
-  block.first_contact = plan.contacts;
-  block.first_value = plan.values;
-  if constexpr (E::functions > 0) plan.values += block.size();
+  block.first_contact = plan.in_pose.contacts;
+  block.first_value = plan.in_pose.values;
+  if constexpr (E::functions > 0) plan.in_pose.values += block.size();
   if constexpr (SearchesCurve<E>) {
-    for (const auto& entry : list) plan.element_contact[at(entry.id)] = plan.contacts++;
+    for (const auto& entry : list) plan.element_contact[at(entry.id)] = plan.in_pose.contacts++;
   }
   for (int e = 0; e < block.size(); ++e) {
     if (block.body_i[at(e)] < plan.bodies) plan.body_has_row[at(block.body_i[at(e)])] = 1;
@@ -197,8 +197,8 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
     using E = ElementOf<decltype(list)>;
     auto& block = std::get<ForceBlock<E>>(plan->forces);
     choose_elements(list, {}, *plan, block);
-    block.first_value = plan->loads;
-    plan->loads += E::functions * block.size();
+    block.first_value = plan->in_pose.loads;
+    plan->in_pose.loads += E::functions * block.size();
   });
   if (!options.one_sided && !plan->gap_rows.empty()) {
     const int element = plan->row_element[at(plan->gap_rows.front())];

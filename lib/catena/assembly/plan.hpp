@@ -58,11 +58,13 @@ struct Plan {
   int moving = 0;       ///< plan bodies 0 ... moving - 1 are solved for
   int columns = 0;      ///< unknown coordinates
   int rows = 0;         ///< constraint rows that are solved for
-  int contacts = 0;     ///< elements that search on curves, with rows or without
-  int values = 0;       ///< constraints whose types have functions of time, with rows: Pose::values
-  int loads = 0;        ///< functions of time and laws of force elements: Pose::loads
   int driver_rows = 0;  ///< those of drivers
   int islands = 0;
+  struct {
+    int contacts = 0;  ///< elements that search on curves, with rows or without
+    int values = 0;    ///< constraints whose types have functions of time, with rows
+    int loads = 0;     ///< functions of time and laws of force elements
+  } in_pose;           ///< sizes of what Pose holds
 
   std::vector<int> plan_body;   ///< of a model body
   std::vector<int> model_body;  ///< of a plan body

@@ -32,12 +32,12 @@ LaneStaticSystem::LaneStaticSystem(const LaneProgram& program)
       told_(rest_numbers) {
   const Plan& plan = program.plan();
   const int n = plan.columns, m = plan.rows, free = n - m;
-  stiffness_ = LaneNumbers(n * n);
-  reduced_ = LaneNumbers(n * n);
-  reflector_ = LaneNumbers(n * m);
-  factor_ = LaneNumbers(m);
-  diagonal_ = LaneNumbers(m);
-  lower_ = LaneNumbers(free * free);
+  factored_.stiffness = LaneNumbers(n * n);
+  factored_.reduced = LaneNumbers(n * n);
+  factored_.reflector = LaneNumbers(n * m);
+  factored_.factor = LaneNumbers(m);
+  factored_.diagonal = LaneNumbers(m);
+  factored_.lower = LaneNumbers(free * free);
   work_ = LaneNumbers(2 * n);
   for (int c = 0; c < n; ++c) {
     for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
@@ -71,12 +71,12 @@ LaneStaticSystem::LaneStaticSystem(const LaneProgram& program)
   job_.gradient = gradient_.data();
   job_.change = change.data();
   job_.next_lambda = next_lambda.data();
-  job_.stiffness = stiffness_.data();
-  job_.reduced = reduced_.data();
-  job_.reflector = reflector_.data();
-  job_.factor = factor_.data();
-  job_.diagonal = diagonal_.data();
-  job_.lower = lower_.data();
+  job_.stiffness = factored_.stiffness.data();
+  job_.reduced = factored_.reduced.data();
+  job_.reflector = factored_.reflector.data();
+  job_.factor = factored_.factor.data();
+  job_.diagonal = factored_.diagonal.data();
+  job_.lower = factored_.lower.data();
   job_.work = work_.data();
   job_.told = told_.data();
 }

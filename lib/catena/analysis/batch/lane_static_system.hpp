@@ -66,7 +66,10 @@ class LaneStaticSystem {
   const LaneProgram& program_;
   LaneNumbers field_, function_, frame_, unit_, matrix_, right_;
   LaneNumbers inverse_arm_, origin_, length_, mask_, gradient_;
-  LaneNumbers stiffness_, reduced_, reflector_, factor_, diagonal_, lower_, work_, told_;
+  struct {
+    LaneNumbers stiffness, reduced, reflector, factor, diagonal, lower;
+  } factored_;
+  LaneNumbers work_, told_;
   std::vector<int> entry_row_, entry_column_;
   LaneStaticJob job_{};
 };

@@ -24,7 +24,7 @@ constexpr int most_rounds = 1000;
 bool ContactSwitch::find_free_accelerations(double t, std::span<const double> q, std::span<const double> qd,
                                             ContactLoads& loads) {
   equations_.attach(&loads);
-  const bool found = equations_.accelerations(t, Side::after, q, qd, qdd_);
+  const bool found = equations_.accelerations(t, Side::after, q, qd, unit_.qdd);
   equations_.attach(nullptr);
   return found;
 }
@@ -153,8 +153,8 @@ std::vector<std::vector<std::size_t>> ContactSwitch::active_by_group() {
 void ContactSwitch::set_up(ContactProblem& problem, const Cause& cause) const {
   fill(problem);
   const auto take = [&](std::size_t row, const Evaluator::ScalarMotion& motion) {
-    problem.b[row] = motion.bend + product(motion, qdd_);
-    problem.b_terms[row] = std::abs(motion.bend) + size_of_product(motion, qdd_);
+    problem.b[row] = motion.bend + product(motion, unit_.qdd);
+    problem.b_terms[row] = std::abs(motion.bend) + size_of_product(motion, unit_.qdd);
   };
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const std::size_t k = active_[a];

@@ -38,12 +38,12 @@ void ContactSwitch::apply(const Strike& strike, std::span<const double> q, std::
     const double* rate = &qd[at(3 * body)];
     return strike.impulse.x * (rate[0] - rate[2] * arm.y) + strike.impulse.y * (rate[1] + rate[2] * arm.x);
   };
-  std::fill(load_.begin(), load_.end(), 0.0);
-  load_[at(3 * body)] = strike.impulse.x;
-  load_[at(3 * body + 1)] = strike.impulse.y;
-  load_[at(3 * body + 2)] = cross(arm, strike.impulse);
-  std::vector<double> change(load_.size(), 0.0), multipliers(nothing_);
-  equations_.solve_motion(load_, nothing_, change, multipliers);
+  std::fill(unit_.load.begin(), unit_.load.end(), 0.0);
+  unit_.load[at(3 * body)] = strike.impulse.x;
+  unit_.load[at(3 * body + 1)] = strike.impulse.y;
+  unit_.load[at(3 * body + 2)] = cross(arm, strike.impulse);
+  std::vector<double> change(unit_.load.size(), 0.0), multipliers(unit_.nothing);
+  equations_.solve_motion(unit_.load, unit_.nothing, change, multipliers);
   const double before = speed();
   for (std::size_t k = 0; k < qd.size(); ++k) qd[k] += change[k];
   for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += multipliers[r];

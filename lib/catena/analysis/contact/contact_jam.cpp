@@ -20,7 +20,7 @@ bool ContactSwitch::gives_way(std::size_t row, double response) const {
   const Evaluator::ScalarMotion& motion = row % 2 == 0 ? gap_[active_[row / 2]] : slide_[active_[row / 2]];
   const std::vector<double>& mass = equations_.masses().mass;
   const std::size_t moving = 3 * at(evaluator_.plan().moving);
-  std::vector<double> gradient(load_.size(), 0.0);
+  std::vector<double> gradient(unit_.load.size(), 0.0);
   scatter_gradient(motion, 1, gradient);
   double free = 0;
   for (std::size_t c = 0; c < moving; ++c) {
@@ -41,7 +41,7 @@ bool ContactSwitch::is_jammed(bool accelerates) const {
     problem.place[a].growth = 1;
     const Evaluator::ScalarMotion& gap = gap_[active_[a]];
     if (!problem.place[a].has_normal) continue;
-    problem.b[2 * a] = accelerates ? gap.bend + product(gap, qdd_) : gap.rate;
+    problem.b[2 * a] = accelerates ? gap.bend + product(gap, unit_.qdd) : gap.rate;
   }
   return !problem.solve();
 }
@@ -59,10 +59,10 @@ std::vector<std::size_t> ContactSwitch::pushed_through(double t, const ContactPr
   for (std::size_t a = 0; a < active_.size(); ++a) {
     if (!problem.place[a].has_normal || problem.D(2 * a, 2 * a) > 0) continue;
     const std::size_t k = active_[a];
-    std::vector<double> gradient(load_.size(), 0.0);
+    std::vector<double> gradient(unit_.load.size(), 0.0);
     scatter_gradient(gap_[k], 1, gradient);
     double terms = std::abs(gap_[k].bend);
-    for (std::size_t c = 0; c < gradient.size(); ++c) terms = std::max(terms, std::abs(gradient[c] * qdd_[c]));
+    for (std::size_t c = 0; c < gradient.size(); ++c) terms = std::max(terms, std::abs(gradient[c] * unit_.qdd[c]));
     const double rounding = ContactProblem::rounding_of_sums * terms;
     const bool accelerates = problem.b[2 * a] < -rounding;
     if (accelerates || (returns(t, k, cause) && problem.b[2 * a] <= rounding)) places.push_back(k);
@@ -75,7 +75,7 @@ Report ContactSwitch::blocked(double t, std::span<const std::size_t> places) {
   SingularPoint& point = blocked_.emplace();
   point.kind = SingularPoint::Kind::lock_up;
   point.t = t;
-  std::vector<double> w(nothing_), nu(nothing_);
+  std::vector<double> w(unit_.nothing), nu(unit_.nothing);
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const bool concerned = std::find(places.begin(), places.end(), active_[a]) != places.end();
     for (std::size_t r = 0; concerned && r < w.size(); ++r) w[r] += multipliers_[2 * a][r];

@@ -55,9 +55,9 @@ ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vect
       gap_(points.size()),
       slide_(points.size()) {
   const auto coordinates = at(evaluator_.plan().coordinates());
-  load_.resize(coordinates);
-  qdd_.resize(coordinates);
-  nothing_.assign(at(evaluator_.plan().rows), 0.0);
+  unit_.load.resize(coordinates);
+  unit_.qdd.resize(coordinates);
+  unit_.nothing.assign(at(evaluator_.plan().rows), 0.0);
 }
 
 void ContactSwitch::take_over(const ContactSwitch& earlier) {
@@ -110,15 +110,15 @@ bool ContactSwitch::is_active(std::size_t k) const {
 
 // What a unit force at every touching place makes of accelerations and multipliers, on the constraints.
 void ContactSwitch::find_responses() {
-  change_.assign(2 * active_.size(), std::vector<double>(load_.size(), 0.0));
-  multipliers_.assign(2 * active_.size(), nothing_);
+  change_.assign(2 * active_.size(), std::vector<double>(unit_.load.size(), 0.0));
+  multipliers_.assign(2 * active_.size(), unit_.nothing);
   for (std::size_t a = 0; a < active_.size(); ++a) {
     for (std::size_t along = 0; along < 2; ++along) {
       const ContactPoint& point = points_[active_[a]];
       if (along == 0 ? point.kind != ContactKind::rigid : !point.has_friction()) continue;
-      std::fill(load_.begin(), load_.end(), 0.0);
-      scatter_gradient(along == 0 ? gap_[active_[a]] : slide_[active_[a]], 1, load_);
-      equations_.solve_motion(load_, nothing_, change_[2 * a + along], multipliers_[2 * a + along]);
+      std::fill(unit_.load.begin(), unit_.load.end(), 0.0);
+      scatter_gradient(along == 0 ? gap_[active_[a]] : slide_[active_[a]], 1, unit_.load);
+      equations_.solve_motion(unit_.load, unit_.nothing, change_[2 * a + along], multipliers_[2 * a + along]);
     }
   }
 }
@@ -204,7 +204,7 @@ Report ContactSwitch::decide(double t, std::span<const double> q, std::span<doub
   }
   look(qd);
   const bool is_told = cause.jolts || cause.strike;
-  p_.assign(is_told ? nothing_.size() : 0, 0.0);
+  p_.assign(is_told ? unit_.nothing.size() : 0, 0.0);
   impulses_.clear();
   jump_.reset();
   if (is_told) {

@@ -211,7 +211,9 @@ class ContactSwitch {
   // Of the touching places, two each: what a unit force across and along makes of accelerations and multipliers.
   std::vector<std::size_t> active_;
   std::vector<std::vector<double>> change_, multipliers_;
-  std::vector<double> load_, nothing_, qdd_;
+  struct {
+    std::vector<double> load, nothing, qdd;
+  } unit_;  // such a force, no right-hand sides beside it, and accelerations without any
   std::vector<SharedForces> shared_;
   OtherLaws other_laws_;
   SeveralStates several_states_;

@@ -37,9 +37,9 @@ class Dynamics {
 
   const Plan& plan() const { return *plan_; }
   /// The method in use: the requested one, or the one chosen automatically.
-  IntegrationMethod method() const { return method_; }
+  IntegrationMethod method() const { return methods_.present; }
   /// All that were in use, in the order of their first steps.
-  const std::vector<IntegrationMethod>& methods() const { return methods_; }
+  const std::vector<IntegrationMethod>& methods() const { return methods_.used; }
   Evaluator& evaluator() { return evaluator_; }
 
   /// Starts from a state of an earlier analysis instead of the given configuration at t = 0.
@@ -129,6 +129,7 @@ class Dynamics {
   Report check_order() const;
   int freedoms() const;
   Report check_freedoms() const;
+  Report check_method() const;
   Report start();
   Report set_out();
   Report next(RowObserver& observer);
@@ -161,7 +162,10 @@ class Dynamics {
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
   DynamicsOptions options_;
-  IntegrationMethod method_ = IntegrationMethod::rk8;
+  struct {
+    IntegrationMethod present = IntegrationMethod::rk8;
+    std::vector<IntegrationMethod> used;
+  } methods_;
   EvaluationWork evaluation_;
   Evaluator evaluator_;
   EquationsOfMotion equations_;
@@ -179,9 +183,11 @@ class Dynamics {
   double pause_after_ = std::numeric_limits<double>::infinity();
   // Of the run under way.
   DynamicsRun run_;
-  std::optional<Evaluator::TimeLimit> time_limit_;  // while it lasts
-  std::optional<Motion> motion_;
-  std::unique_ptr<Integrator> integrator_;
+  struct {
+    std::optional<Evaluator::TimeLimit> limit;  // while it lasts
+    std::optional<Motion> motion;
+    std::unique_ptr<Integrator> integrator;
+  } under_way_;
   std::shared_ptr<const LawStretches> law_stretches_;  // none where no law reads t, or steps are fixed
   StepPace pace_;
   /// The search for stiffness: steps and time at the last look, and when the next one is.
@@ -191,7 +197,6 @@ class Dynamics {
     double t = 0;
     IntegrationMethod explicit_method = IntegrationMethod::rk8;
   } stiffness_;
-  std::vector<IntegrationMethod> methods_;
   MotionWork work_;
   PresentRow row_;
   SingularRows singular_;

@@ -26,17 +26,17 @@ Report Dynamics::check_ends_at(std::span<const double> y) const {
 // Checks the last step, which began at `from`.
 Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
   const auto left_at = [&](double t) {
-    if (t == integrator_->time()) {
-      std::copy(integrator_->state().begin(), integrator_->state().end(), row_.y.begin());
+    if (t == under_way_.integrator->time()) {
+      std::copy(under_way_.integrator->state().begin(), under_way_.integrator->state().end(), row_.y.begin());
     } else {
-      integrator_->interpolate(t, row_.y);
+      under_way_.integrator->interpolate(t, row_.y);
     }
     evaluator_.set_time(t);
     evaluator_.set_configuration(std::span<const double>(row_.y).first(q_.size()));
     return !check_ends_at(row_.y).ok();
   };
   int places = samples;
-  const std::span<const double> qd = integrator_->state().subspan(q_.size(), q_.size());
+  const std::span<const double> qd = under_way_.integrator->state().subspan(q_.size(), q_.size());
   double turn = 0;
   for (std::size_t k = 2; k < qd.size(); k += 3) turn = std::max(turn, std::abs(qd[k]) * (t_ - from));
   places = std::max(places, static_cast<int>(std::ceil(std::min(turn, 1e4) / most_turn)));

@@ -57,31 +57,35 @@ std::vector<double> vanishing_combination(EquationsOfMotion& equations, double t
 std::optional<SingularPoint> Dynamics::dead_point_ahead() {
   if (plan_->rows == 0) return {};
   const bool is_fixed = options_.step > 0;
-  if (is_fixed || method_ == IntegrationMethod::alpha) {
+  if (is_fixed || methods_.present == IntegrationMethod::alpha) {
     // A step of fixed size, or of order 2, fails far from the place: shorter ones of order 8 lead on, no further than
     // two of its steps, or than a dead point can be.
-    const double now = integrator_->time();
-    const double way = longest_way * time_by_accelerations(evaluator_, integrator_->state().subspan(q_.size()),
-                                                           integrator_->accelerations());
+    const double now = under_way_.integrator->time();
+    const double way =
+        longest_way * time_by_accelerations(evaluator_, under_way_.integrator->state().subspan(q_.size()),
+                                            under_way_.integrator->accelerations());
     const double step = std::exchange(options_.step, 0);
-    const bool second_order = method_ == IntegrationMethod::alpha || method_ == IntegrationMethod::rattle;
-    const IntegrationMethod method = std::exchange(method_, second_order ? IntegrationMethod::rk8 : method_);
-    std::unique_ptr<Integrator> shorter = make_integrator(*motion_, run_.grid.last());
+    const bool second_order =
+        methods_.present == IntegrationMethod::alpha || methods_.present == IntegrationMethod::rattle;
+    const IntegrationMethod method =
+        std::exchange(methods_.present, second_order ? IntegrationMethod::rk8 : methods_.present);
+    std::unique_ptr<Integrator> shorter = make_integrator(*under_way_.motion, run_.grid.last());
     options_.step = step;
-    method_ = method;
+    methods_.present = method;
     const double end = std::min({now + (is_fixed ? 2 * step : way), next_breakpoint(now), run_.grid.last()});
     if (!(end > now && (is_fixed || std::isfinite(way)))) return {};
-    if (!shorter->start(integrator_->time(), integrator_->state())) return {};
+    if (!shorter->start(under_way_.integrator->time(), under_way_.integrator->state())) return {};
     while (shorter->time() < end && shorter->advance(end)) continue;
     if (!(shorter->time() < end)) return {};
-    integrator_ = std::move(shorter);
-    t_ = integrator_->time();
+    under_way_.integrator = std::move(shorter);
+    t_ = under_way_.integrator->time();
   }
   if (!(equations_.smallest_pivot_ratio() < dependence::worth_a_search)) return {};
   const std::size_t n = q_.size();
-  const double t = integrator_->time();
-  std::vector<double> q(integrator_->state().begin(), integrator_->state().begin() + static_cast<std::ptrdiff_t>(n));
-  const std::span<const double> qd = integrator_->state().subspan(n, n);
+  const double t = under_way_.integrator->time();
+  std::vector<double> q(under_way_.integrator->state().begin(),
+                        under_way_.integrator->state().begin() + static_cast<std::ptrdiff_t>(n));
+  const std::span<const double> qd = under_way_.integrator->state().subspan(n, n);
   const std::vector<double> w = vanishing_combination(equations_, t, q);
   if (w.empty()) return {};
   const double rest = time_to_dead_point(w, q);
@@ -98,8 +102,8 @@ std::optional<SingularPoint> Dynamics::dead_point_ahead() {
 std::optional<SingularPoint> Dynamics::infinity_ahead() {
   if (plan_->rows == 0) return {};
   const std::size_t n = q_.size();
-  const double t = integrator_->time();
-  const std::span<const double> y = integrator_->state();
+  const double t = under_way_.integrator->time();
+  const std::span<const double> y = under_way_.integrator->state();
   std::vector<double> slope(y.size(), 0.0);
   if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), std::span(slope).subspan(n, n))) return {};
   const std::optional<double> instant =
@@ -124,8 +128,8 @@ std::optional<Report> Dynamics::lock_up_ahead() {
 // rows that vanishes there.
 double Dynamics::time_to_dead_point(std::span<const double> w, std::vector<double>& q) {
   const std::size_t n = q.size();
-  const double t = integrator_->time(), longest = run_.grid.last() - t;
-  const std::span<const double> y = integrator_->state(), qd = y.subspan(n, n);
+  const double t = under_way_.integrator->time(), longest = run_.grid.last() - t;
+  const std::span<const double> y = under_way_.integrator->state(), qd = y.subspan(n, n);
   std::vector<double> slope(y.size(), 0.0);
   if (!equations_.accelerations(t, Side::after, y.first(n), qd, std::span(slope).subspan(n, n))) return 0;
   const double rest = time_by_accelerations(evaluator_, qd, std::span(slope).subspan(n, n));

@@ -105,18 +105,18 @@ Report Dynamics::check_freedoms() const {
 // Multistep methods save evaluations in smooth motions of many bodies; in closed loops, which may come to singular
 // positions, and at tolerances near rounding, Runge-Kutta is the safer choice.
 void Dynamics::choose_method(bool stages_are_watched) {
-  method_ = options_.method;
-  stiffness_.wanted = method_ == IntegrationMethod::automatic && options_.may_turn_implicit && options_.step == 0 &&
-                      !stages_are_watched;
-  if (method_ == IntegrationMethod::automatic) {
+  methods_.present = options_.method;
+  stiffness_.wanted = methods_.present == IntegrationMethod::automatic && options_.may_turn_implicit &&
+                      options_.step == 0 && !stages_are_watched;
+  if (methods_.present == IntegrationMethod::automatic) {
     // Derivatives that are carried along the stages of order 8 cost no evaluations; beside steps of Adams all are
     // theirs.
     const bool multistep = !stages_are_watched && options_.step == 0 &&
                            options_.tolerance >= least_multistep_tolerance && plan_->moving >= least_multistep_bodies &&
                            !has_closed_loops(*plan_);
-    method_ = multistep ? IntegrationMethod::adams : IntegrationMethod::rk8;
+    methods_.present = multistep ? IntegrationMethod::adams : IntegrationMethod::rk8;
   }
-  methods_ = {method_};
+  methods_.used = {methods_.present};
 }
 
 std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, double horizon) const {
@@ -128,7 +128,7 @@ std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, doub
                             .may_lower_order = options_.method != IntegrationMethod::rk8,
                             .usual_ratio = freedoms() > 0 ? redundant_.generic_ratio() : 0};
   const double finer = std::min(options.tolerance, std::max(finer_part * options.tolerance, least_step_tolerance));
-  switch (method_) {
+  switch (methods_.present) {
     case IntegrationMethod::automatic:
     case IntegrationMethod::rk8:
       break;
@@ -190,9 +190,9 @@ Report Dynamics::check_pace(double last) {
   // At a hopeless pace the steps are too small; otherwise the bound was reached.
   report.status = hopeless ? Status::step_too_small : Status::not_converged;
   std::string culprit;
-  if (integrator_->culprit() >= 0) {
+  if (under_way_.integrator->culprit() >= 0) {
     culprit = fmt::format(" the error of body \"{}\" asks for short ones;",
-                          model_->body_name(plan_->model_body[at(integrator_->culprit() / 3)]));
+                          model_->body_name(plan_->model_body[at(under_way_.integrator->culprit() / 3)]));
   }
   std::string cause = near_branches();
   if (cause.empty()) {

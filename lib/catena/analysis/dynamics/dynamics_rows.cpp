@@ -60,7 +60,8 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
 Report Dynamics::give_row(double t, RowObserver& observer) {
   const std::optional<Snapshot> state = state_at(t);
   if (!state) return stuck();
-  if (work_.balance && t != integrator_->time() && equations_.smallest_pivot_ratio() < dependence::singular_passage) {
+  if (work_.balance && t != under_way_.integrator->time() &&
+      equations_.smallest_pivot_ratio() < dependence::singular_passage) {
     work_.balance->observe(*state);
     if (Report balance = judge_balance(t); !balance.ok()) return balance;
   }
@@ -72,12 +73,12 @@ Report Dynamics::give_row(double t, RowObserver& observer) {
 std::optional<Snapshot> Dynamics::state_at(double t) {
   const std::size_t n = q_.size();
   const std::span<double> y(row_.y);
-  if (t == integrator_->time()) {
-    std::copy(integrator_->state().begin(), integrator_->state().end(), y.begin());
-    row_.residual = integrator_->position_residual();
+  if (t == under_way_.integrator->time()) {
+    std::copy(under_way_.integrator->state().begin(), under_way_.integrator->state().end(), y.begin());
+    row_.residual = under_way_.integrator->position_residual();
   } else {
-    integrator_->interpolate(t, y);
-    if (integrator_->meets_constraints()) {
+    under_way_.integrator->interpolate(t, y);
+    if (under_way_.integrator->meets_constraints()) {
       if (!equations_.factorize(t, Side::after, y.first(n))) return {};
       row_.residual = equations_.project_position(y.first(n), 4);
       equations_.project_velocity(y.subspan(n, n), 0);
@@ -147,30 +148,31 @@ Report Dynamics::stuck() {
   const int lost = evaluator_.law_without_value();
   if (std::optional<Report> locked = lock_up_ahead()) return *locked;
   // An element that is undefined in kinematics is undefined here as well.
-  evaluator_.set_time(integrator_->time());
-  evaluator_.set_configuration(integrator_->state().first(q_.size()));
+  evaluator_.set_time(under_way_.integrator->time());
+  evaluator_.set_configuration(under_way_.integrator->state().first(q_.size()));
   if (Report sound = watched_.check(); !sound.ok()) return sound;
-  if (Report laws = watched_.check_laws(integrator_->state().subspan(q_.size(), q_.size())); !laws.ok()) return laws;
-  if (Report ropes = check_ropes_ahead(watched_, evaluator_, integrator_->state()); !ropes.ok()) return ropes;
+  if (Report laws = watched_.check_laws(under_way_.integrator->state().subspan(q_.size(), q_.size())); !laws.ok())
+    return laws;
+  if (Report ropes = check_ropes_ahead(watched_, evaluator_, under_way_.integrator->state()); !ropes.ok()) return ropes;
   if (lost >= 0) {
     report.status = Status::singular;
     report.message = fmt::format("{} is undefined beyond t = {:.9g} s: its expression has no finite value there",
-                                 describe_law(*model_, lost), integrator_->time());
+                                 describe_law(*model_, lost), under_way_.integrator->time());
     return report;
   }
   report.status = Status::step_too_small;
   std::string where;
-  if (integrator_->culprit() >= 0) {
+  if (under_way_.integrator->culprit() >= 0) {
     where = fmt::format("the error of body \"{}\" cannot be kept small enough",
-                        model_->body_name(plan_->model_body[at(integrator_->culprit() / 3)]));
+                        model_->body_name(plan_->model_body[at(under_way_.integrator->culprit() / 3)]));
   } else {
     where = "accelerations are not finite or constraints cannot be kept";
   }
   std::string cause = "forces that grow without bound, or a motion that jumps";
   if (const std::string undetermined = equations_.undetermined(); !undetermined.empty()) cause = undetermined;
   if (std::string branches = near_branches(); !branches.empty()) cause = std::move(branches);
-  report.message =
-      fmt::format("no step can be made at t = {:.12g} s: {}; likely cause: {}", integrator_->time(), where, cause);
+  report.message = fmt::format("no step can be made at t = {:.12g} s: {}; likely cause: {}",
+                               under_way_.integrator->time(), where, cause);
   return report;
 }
 

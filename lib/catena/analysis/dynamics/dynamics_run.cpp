@@ -41,9 +41,25 @@ void Dynamics::begin(const TimeGrid& grid, const Needs& needs) {
   run_.report.bodies = static_cast<int>(model_->bodies.size());
   run_.report.rows = plan_->rows;
   run_.report.islands = plan_->islands;
-  integrator_.reset();
+  under_way_.integrator.reset();
   begin_looking_for_stiffness();
   run_.outcome = run_.grid.size() > 0 ? start() : Report{};
+}
+
+// What a method needs of the mechanism and of the options.
+Report Dynamics::check_method() const {
+  if (methods_.present == IntegrationMethod::partitioning) {
+    if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
+  }
+  if (!(options_.rho >= 0 && options_.rho <= 1))
+    return {
+        Status::refused, fmt::format("\"rho\" of method alpha is a part, 0 ... 1, and not {:.6g}", options_.rho), {}};
+  if (methods_.present == IntegrationMethod::rattle && !(options_.step > 0)) {
+    return {Status::refused,
+            "method rattle makes steps of one length, which its accuracy follows from: give \"step\", s",
+            {}};
+  }
+  return {};
 }
 
 // Everything up to the first row.
@@ -51,21 +67,11 @@ Report Dynamics::start() {
   if (const Report order = check_order(); !order.ok()) return order;
   const TimeRange run{t_, run_.grid.last()};
   if (Report functions = check_time_functions(*model_, run); !functions.ok()) return functions;
-  time_limit_.emplace(evaluator_, run);
+  under_way_.limit.emplace(evaluator_, run);
   if (!origin_.prepared) {
     if (const Report prepared = prepare(run_.report.warnings); !prepared.ok()) return prepared;
   }
-  if (method_ == IntegrationMethod::partitioning) {
-    if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
-  }
-  if (!(options_.rho >= 0 && options_.rho <= 1))
-    return {
-        Status::refused, fmt::format("\"rho\" of method alpha is a part, 0 ... 1, and not {:.6g}", options_.rho), {}};
-  if (method_ == IntegrationMethod::rattle && !(options_.step > 0)) {
-    return {Status::refused,
-            "method rattle makes steps of one length, which its accuracy follows from: give \"step\", s",
-            {}};
-  }
+  if (const Report method = check_method(); !method.ok()) return method;
   work_.account.reset();
   // Where constraints are redundant, parts massless or contacts rub the work is summed up for the check alone.
   const bool rubs = attached_.contacts && attached_.contacts->dissipates();
@@ -75,17 +81,17 @@ Report Dynamics::start() {
   work_.balance.reset();
   if ((work_.account || conserves) && options_.step == 0) work_.balance.emplace();
   row_.driver_work.assign(work_.account ? model_->elements.size() : 0, 0.0);
-  motion_.emplace(equations_, work_.account ? &*work_.account : nullptr);
+  under_way_.motion.emplace(equations_, work_.account ? &*work_.account : nullptr);
   if (plan_->rows == 0 && lacks_length(evaluator_)) {
     const double way = origin_.resumed ? memory_.length : way_of_motion(equations_, t_, q_, qd_, run_.grid.last());
-    if (way > 0) motion_->set_length_scale(way);
+    if (way > 0) under_way_.motion->set_length_scale(way);
   }
-  integrator_ = make_integrator(*motion_, run_.grid.last());
-  row_.y.assign(motion_->size(), 0.0);
-  row_.slope.assign(motion_->size(), 0.0);
+  under_way_.integrator = make_integrator(*under_way_.motion, run_.grid.last());
+  row_.y.assign(under_way_.motion->size(), 0.0);
+  row_.slope.assign(under_way_.motion->size(), 0.0);
   if (const Report out = set_out(); !out.ok()) {
     evaluator_.forget_turns();
-    integrator_.reset();
+    under_way_.integrator.reset();
     return out;
   }
   if (attached_.events) {
@@ -103,7 +109,7 @@ Report Dynamics::start() {
     evaluator_.set_configuration(std::span<const double>(row_.y).first(q_.size()));
     work_.balance->know_energy(work_.earlier_motion);
     work_.balance->begin(snapshot(t_, row_.y, {}), equations_.masses(), options_.tolerance, work_.account.has_value(),
-                         !integrator_->meets_constraints());
+                         !under_way_.integrator->meets_constraints());
   }
   if (!watched_.may_end()) return {};
   evaluator_.set_configuration(std::span<const double>(row_.y).first(q_.size()));
@@ -130,9 +136,9 @@ Report Dynamics::check_balance() {
   if (!looks) return {};
   if (attached_.events) {
     evaluator_.set_time(t_);
-    evaluator_.set_configuration(integrator_->state().first(q_.size()));
+    evaluator_.set_configuration(under_way_.integrator->state().first(q_.size()));
   }
-  work_.balance->observe(snapshot(t_, integrator_->state(), {}));
+  work_.balance->observe(snapshot(t_, under_way_.integrator->state(), {}));
   return judges ? judge_balance(t_) : Report{};
 }
 
@@ -157,7 +163,7 @@ Report Dynamics::set_out() {
     std::vector<double> turned(q_.size(), 0.0);
     for (std::size_t b = 0; b < memory_.turns.size(); ++b) turned[3 * b + 2] = memory_.turns[b] * 2 * std::numbers::pi;
     evaluator_.take_turns(turned);
-    integrator_->remember(memory_.integrator);
+    under_way_.integrator->remember(memory_.integrator);
     equations_.weigh_massless(std::span(row_.y).first(q_.size()));
     redundant_.take_up(memory_.left_out, std::span(row_.y).first(q_.size()));
   } else {
@@ -165,13 +171,13 @@ Report Dynamics::set_out() {
     std::copy(qd_.begin(), qd_.end(), row_.y.begin() + static_cast<std::ptrdiff_t>(q_.size()));
     evaluator_.take_turns(std::span(row_.y).first(q_.size()));
   }
-  if (!integrator_->start(t_, row_.y)) return stuck();
+  if (!under_way_.integrator->start(t_, row_.y)) return stuck();
   if (!origin_.resumed && (know_start_from_rest() || know_singular_start())) {
     // An integrator keeps a copy of the motion, and the step that the first slope suggested.
-    integrator_ = make_integrator(*motion_, run_.grid.last());
-    if (!integrator_->start(t_, row_.y)) return stuck();
+    under_way_.integrator = make_integrator(*under_way_.motion, run_.grid.last());
+    if (!under_way_.integrator->start(t_, row_.y)) return stuck();
   }
-  if (attached_.follower) attached_.follower->begin(*integrator_, equations_);
+  if (attached_.follower) attached_.follower->begin(*under_way_.integrator, equations_);
   if (!work_.account) return {};
   if (origin_.resumed) {
     work_.initial_energy = memory_.initial_energy;
@@ -187,7 +193,7 @@ Report Dynamics::set_out() {
 
 bool Dynamics::go_on(std::int64_t rows, RowObserver& observer) {
   const FlushDenormals flush;
-  if (integrator_) integrator_->show_stages_to(observer.stage_watcher());
+  if (under_way_.integrator) under_way_.integrator->show_stages_to(observer.stage_watcher());
   rows = std::min(rows, run_.grid.size());
   while (run_.outcome.ok() && run_.next_row < rows && !run_.stopped()) run_.outcome = next(observer);
   if (run_.outcome.status == Status::lock_up && !std::exchange(run_.locked, true)) give_row_at_lock_up(observer);
@@ -199,7 +205,7 @@ Report Dynamics::next(RowObserver& observer) {
   const double row = run_.grid[run_.next_row];
   if (row < t_ || (row == t_ && !run_.at_jump)) return give_row(run_.grid[run_.next_row++], observer);
   if (run_.at_jump) return start_anew();
-  if (t_ < pause_after_ || !integrator_->may_pause()) return step(observer);
+  if (t_ < pause_after_ || !under_way_.integrator->may_pause()) return step(observer);
   remember();
   return {};
 }
@@ -209,17 +215,18 @@ Report Dynamics::step(RowObserver& observer) {
   double reach = law_stretches_ ? std::min(limit, law_stretches_->limit(t_)) : limit;
   // Where drivers move all, a law says nothing of itself in the errors of the motion: its work alone does, at the
   // stages.
-  if (work_.account && options_.step == 0 && !evaluator_.laws().empty() && freedoms() == 0 && integrator_->rate() > 0)
-    reach = std::min(reach, t_ + thresholds::driven_stretch / integrator_->rate());
-  if (!integrator_->advance(reach)) return stuck();
+  if (work_.account && options_.step == 0 && !evaluator_.laws().empty() && freedoms() == 0 &&
+      under_way_.integrator->rate() > 0)
+    reach = std::min(reach, t_ + thresholds::driven_stretch / under_way_.integrator->rate());
+  if (!under_way_.integrator->advance(reach)) return stuck();
   const double before = t_;
-  t_ = integrator_->time();
+  t_ = under_way_.integrator->time();
   if (attached_.follower) {
-    if (integrator_->straight_passages() > 0) attached_.follower->jump();
-    attached_.follower->step(*integrator_, equations_);
+    if (under_way_.integrator->straight_passages() > 0) attached_.follower->jump();
+    attached_.follower->step(*under_way_.integrator, equations_);
   }
   singular_.follow_step();
-  redundant_.follow(integrator_->state().first(q_.size()));
+  redundant_.follow(under_way_.integrator->state().first(q_.size()));
   if (!observer.proceed(t_)) return cancelled(t_);
   if (const Report pace = check_pace(run_.grid.last()); !pace.ok()) return pace;
   if (const Report rows = check_redundant_rows(); !rows.ok()) return rows;
@@ -244,9 +251,9 @@ Report Dynamics::step(RowObserver& observer) {
 // A function of time jumps here: the next step starts with what holds afterwards.
 Report Dynamics::start_anew() {
   run_.at_jump = false;
-  std::copy(integrator_->state().begin(), integrator_->state().end(), row_.y.begin());
+  std::copy(under_way_.integrator->state().begin(), under_way_.integrator->state().end(), row_.y.begin());
   const std::span<double> q = std::span(row_.y).first(q_.size()), qd = std::span(row_.y).subspan(q_.size(), q_.size());
-  const std::span<const double> before = integrator_->state().subspan(q_.size(), q_.size());
+  const std::span<const double> before = under_way_.integrator->state().subspan(q_.size(), q_.size());
   if (!equations_.factorize(t_, Side::after, q)) return stuck();
   const double jump = equations_.project_velocity(qd, 0) * evaluator_.length_scale();
   run_.jumping.clear();
@@ -261,7 +268,7 @@ Report Dynamics::start_anew() {
     return {};
   }
   if (!run_.jumping.empty()) take_note_of_jump(before);
-  return integrator_->start(t_, row_.y) ? Report{} : stuck();
+  return under_way_.integrator->start(t_, row_.y) ? Report{} : stuck();
 }
 
 // Velocities of drivers jump, and those of the mechanism have from `before` to what row_.y has.
@@ -283,7 +290,7 @@ void Dynamics::take_note_of_jump(std::span<const double> before) {
 void Dynamics::remember() {
   run_.paused = true;
   memory_.t = t_;
-  memory_.y.assign(integrator_->state().begin(), integrator_->state().end());
+  memory_.y.assign(under_way_.integrator->state().begin(), under_way_.integrator->state().end());
   std::vector<double> turned(q_.size(), 0.0);
   evaluator_.add_turns(turned);
   memory_.turns.resize(static_cast<std::size_t>(plan_->moving));
@@ -292,10 +299,10 @@ void Dynamics::remember() {
   }
   memory_.initial_energy = work_.initial_energy;
   memory_.energy = energy_in_motion();
-  memory_.length = motion_->length_scale();
+  memory_.length = under_way_.motion->length_scale();
   memory_.next_row = run_.next_row;
   memory_.steps = evaluator_.counters.steps + evaluator_.counters.rejected - pace_.first_step;
-  memory_.integrator = integrator_->memory();
+  memory_.integrator = under_way_.integrator->memory();
   memory_.left_out = equations_.left_out();
   memory_.earlier = work_.earlier;
   memory_.curves = evaluator_.curve_places();
@@ -316,17 +323,18 @@ AnalysisReport Dynamics::end() {
   AnalysisReport report = std::move(run_.report);
   report.status = run_.outcome.status;
   report.message = run_.outcome.message;
-  if (integrator_) {
-    const std::span<const double> y = run_.stopped_by < 0 ? integrator_->state() : std::span<const double>(row_.y);
+  if (under_way_.integrator) {
+    const std::span<const double> y =
+        run_.stopped_by < 0 ? under_way_.integrator->state() : std::span<const double>(row_.y);
     std::copy_n(y.begin(), q_.size(), q_.begin());
     std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(q_.size()), q_.size(), qd_.begin());
     if (run_.stopped_by < 0) evaluator_.add_turns(q_);
     evaluator_.forget_turns();
     evaluator_.set_time(t_);
     evaluator_.set_configuration(q_);
-    for (std::string& remark : integrator_->remarks()) report.warnings.push_back(std::move(remark));
+    for (std::string& remark : under_way_.integrator->remarks()) report.warnings.push_back(std::move(remark));
   }
-  time_limit_.reset();
+  under_way_.limit.reset();
   singular_.remark(report.warnings);
   if (!reactions_.ambiguity.empty()) report.warnings.push_back(reactions_.ambiguity);
   origin_.resumed = false;

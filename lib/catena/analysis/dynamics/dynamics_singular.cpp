@@ -38,8 +38,8 @@ std::string Dynamics::near_branches() {
                         model_->element_type(element), model_->element_name(element));
   }
   if (!BranchKeeping::judges(equations_)) return cause;
-  evaluator_.set_time(integrator_->time());
-  const double gap = BranchKeeping(equations_).narrow_gap(equations_, integrator_->state().first(q_.size()));
+  evaluator_.set_time(under_way_.integrator->time());
+  const double gap = BranchKeeping(equations_).narrow_gap(equations_, under_way_.integrator->state().first(q_.size()));
   if (gap == 0) return cause;
   return fmt::format(
       "two branches of the motion that pass each other here at a distance of {:.2g} rad or length scales, nearer than "
@@ -58,9 +58,9 @@ bool Dynamics::know_singular_start() {
     row_.lambda.assign(static_cast<std::size_t>(plan_->rows), 0.0);
     if (MinimumNorm* least = reactions_.factorize(evaluator_)) least->solve(singular_.loads(), row_.lambda);
     work_.account->powers(y.subspan(n, n), row_.lambda, slope.subspan(2 * n));
-    motion_->add_losses(slope.subspan(2 * n));
+    under_way_.motion->add_losses(slope.subspan(2 * n));
   }
-  motion_->know(t_, known_moments * singular_.moment(), slope.subspan(n));
+  under_way_.motion->know(t_, known_moments * singular_.moment(), slope.subspan(n));
   return true;
 }
 
@@ -68,10 +68,10 @@ bool Dynamics::know_singular_start() {
 // later.
 Report Dynamics::check_redundant_rows() {
   Report report;
-  if (redundant_.count() == 0 || !integrator_->meets_constraints()) return report;
-  if (!(integrator_->position_residual() > thresholds::contradiction)) return report;
+  if (redundant_.count() == 0 || !under_way_.integrator->meets_constraints()) return report;
+  if (!(under_way_.integrator->position_residual() > thresholds::contradiction)) return report;
   evaluator_.set_time(t_, Side::before);
-  evaluator_.set_configuration(integrator_->state().first(q_.size()));
+  evaluator_.set_configuration(under_way_.integrator->state().first(q_.size()));
   std::vector<double> phi(static_cast<std::size_t>(plan_->rows));
   evaluator_.phi(phi);
   int worst = 0;

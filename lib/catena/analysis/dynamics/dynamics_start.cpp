@@ -91,9 +91,9 @@ bool Dynamics::know_start_from_rest() {
     double power = 0;
     for (std::size_t k = 0; k < mass.size(); ++k) power += (mass[k] * out[k] - loads[k]) * qd[k];
     work_.account->powers_of_one(qd, leader, power, out.subspan(z.size()));
-    motion_->add_losses(out.subspan(z.size()));
+    under_way_.motion->add_losses(out.subspan(z.size()));
   };
-  motion_->depart(later, slope);
+  under_way_.motion->depart(later, slope);
   return true;
 }
 

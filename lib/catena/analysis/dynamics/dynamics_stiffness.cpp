@@ -29,15 +29,15 @@ constexpr double cost_of_implicit = 60;
 // Of an integrator of this method that starts here: the time that its last steps took on average; 0: it does not get
 // on.
 double Dynamics::try_method(IntegrationMethod method, int steps, double limit) {
-  const IntegrationMethod present = std::exchange(method_, method);
+  const IntegrationMethod present = std::exchange(methods_.present, method);
   std::vector<double> turned(q_.size(), 0.0);
   evaluator_.add_turns(turned);
   const std::vector<CurvePlace> places = evaluator_.curve_places();
   const double speed = attached_.contacts ? attached_.contacts->speed() : 0;
-  const std::unique_ptr<Integrator> trial = make_integrator(*motion_, run_.grid.last());
-  trial->remember(integrator_->memory());
+  const std::unique_ptr<Integrator> trial = make_integrator(*under_way_.motion, run_.grid.last());
+  trial->remember(under_way_.integrator->memory());
   double length = 0;
-  if (trial->start(t_, integrator_->state())) {
+  if (trial->start(t_, under_way_.integrator->state())) {
     double from = t_;
     int made = 0;
     while (made < steps && trial->time() < limit && trial->advance(limit)) {
@@ -47,7 +47,7 @@ double Dynamics::try_method(IntegrationMethod method, int steps, double limit) {
     if (made == steps) length = (trial->time() - from) / (steps - steps / 2);
     if (made < steps && trial->time() >= limit) length = (trial->time() - t_) / made;
   }
-  method_ = present;
+  methods_.present = present;
   evaluator_.forget_turns();
   evaluator_.take_turns(turned);
   evaluator_.go_to_curve_places(places);
@@ -57,10 +57,10 @@ double Dynamics::try_method(IntegrationMethod method, int steps, double limit) {
 
 void Dynamics::begin_with(IntegrationMethod method) {
   if (!stiffness_.wanted) return;
-  const bool implicit = method == IntegrationMethod::radau, is_implicit = method_ == IntegrationMethod::radau;
+  const bool implicit = method == IntegrationMethod::radau, is_implicit = methods_.present == IntegrationMethod::radau;
   if (implicit == is_implicit) return;
-  if (implicit) stiffness_.explicit_method = method_;
-  method_ = implicit ? method : stiffness_.explicit_method;
+  if (implicit) stiffness_.explicit_method = methods_.present;
+  methods_.present = implicit ? method : stiffness_.explicit_method;
 }
 
 // Not where a motion pauses, whose memory holds no method.
@@ -74,18 +74,19 @@ void Dynamics::begin_looking_for_stiffness() {
       .wait = steps_between_looks,
       .t = t_,
       .explicit_method = stiffness_.explicit_method};
-  methods_ = {method_};
+  methods_.used = {methods_.present};
 }
 
 bool Dynamics::look_for_stiffness(double limit) {
   const std::int64_t steps = evaluator_.counters.steps;
-  if (!stiffness_.may_change || steps < stiffness_.next || t_ >= limit || !integrator_->may_pause()) return true;
+  if (!stiffness_.may_change || steps < stiffness_.next || t_ >= limit || !under_way_.integrator->may_pause())
+    return true;
   const double length = (t_ - stiffness_.t) / static_cast<double>(std::max<std::int64_t>(steps - stiffness_.step, 1));
   stiffness_.step = steps;
   stiffness_.t = t_;
   stiffness_.next = steps + stiffness_.wait;
-  const bool implicit = method_ == IntegrationMethod::radau;
-  if (!implicit && many * length * integrator_->rate() >= 1) return true;
+  const bool implicit = methods_.present == IntegrationMethod::radau;
+  if (!implicit && many * length * under_way_.integrator->rate() >= 1) return true;
   const IntegrationMethod other = implicit ? stiffness_.explicit_method : IntegrationMethod::radau;
   const double gained = try_method(other, implicit ? explicit_steps_of_a_trial : steps_of_a_trial, limit);
   stiffness_.step = evaluator_.counters.steps;
@@ -93,16 +94,17 @@ bool Dynamics::look_for_stiffness(double limit) {
   stiffness_.wait = better ? steps_between_looks : 2 * stiffness_.wait;
   stiffness_.next = stiffness_.step + stiffness_.wait;
   if (better) {
-    stiffness_.explicit_method = method_ == IntegrationMethod::radau ? other : method_;
-    method_ = other;
-    if (std::find(methods_.begin(), methods_.end(), method_) == methods_.end()) methods_.push_back(method_);
+    stiffness_.explicit_method = methods_.present == IntegrationMethod::radau ? other : methods_.present;
+    methods_.present = other;
+    if (std::find(methods_.used.begin(), methods_.used.end(), methods_.present) == methods_.used.end())
+      methods_.used.push_back(methods_.present);
   }
   // A trial leaves the equations where it ended.
-  std::unique_ptr<Integrator> next = better ? make_integrator(*motion_, run_.grid.last()) : nullptr;
-  if (!next) return motion_->derivative(t_, Side::before, integrator_->state(), row_.slope);
-  next->remember(integrator_->memory());
-  const bool started = next->start(t_, integrator_->state());
-  if (started) integrator_ = std::move(next);
+  std::unique_ptr<Integrator> next = better ? make_integrator(*under_way_.motion, run_.grid.last()) : nullptr;
+  if (!next) return under_way_.motion->derivative(t_, Side::before, under_way_.integrator->state(), row_.slope);
+  next->remember(under_way_.integrator->memory());
+  const bool started = next->start(t_, under_way_.integrator->state());
+  if (started) under_way_.integrator = std::move(next);
   return started;
 }
 

@@ -79,7 +79,7 @@ void StateDerivatives::leave_out_parameter(Group& group, std::size_t p, int row)
 }
 
 void StateDerivatives::lift_state(Group& group, const Snapshot& snapshot) {
-  if (plan().contacts > 0) {
+  if (plan().in_pose.contacts > 0) {
     const std::vector<CurvePlace> places = snapshot.evaluator.curve_places();
     evaluator_.go_to_curve_places(places);
     group.mechanism.go_to_curve_places(places);

@@ -55,7 +55,7 @@ AdjointMechanism::AdjointMechanism(const Evaluator& evaluator)
     : plan_(evaluator.shared_plan()), model_(&evaluator.model()) {
   for (int p = 0; p <= plan_->bodies; ++p) origin_.push_back(p < plan_->bodies ? evaluator.origin(p) : Vec2<double>{});
   scale_.assign(model_->elements.size(), 1.0);
-  contacts_.resize(at(plan_->contacts));
+  contacts_.resize(at(plan_->in_pose.contacts));
   for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
     using E = ElementOf<decltype(list)>;
     if constexpr (HasSquaredValue<E>) {

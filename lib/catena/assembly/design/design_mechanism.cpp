@@ -46,7 +46,7 @@ DesignMechanism::DesignMechanism(const Evaluator& evaluator, std::shared_ptr<con
   laws_ = compile_laws<DesignScalar>(*model_, evaluator.model().laws, *plan_);
   motion_.resize(at(plan_->bodies) + 1);
   place_immobile_bodies();
-  contacts_.resize(at(plan_->contacts));
+  contacts_.resize(at(plan_->in_pose.contacts));
   for_each_contact(*plan_, model_->constraints, contacts_,
                    [&](const auto& entry, CurvePlace& contact) { contact = evaluator.contact(entry.id); });
 }

@@ -57,8 +57,8 @@ bool Radau::start(double t, std::span<const double> y) {
 
 // The next step knows of none before it.
 void Radau::forget() {
-  linearized_ = has_stages_ = rejected_ = crossing_ = false;
-  first_ = true;
+  is_.linearized = is_.has_stages = is_.rejected = crossing_ = false;
+  is_.first = true;
   factored_h_ = last_error_ = 0;
   h_ = scale_.rate() > 0 ? first_step * std::pow(scale_.tolerance(), 0.25) / scale_.rate()
                          : std::numeric_limits<double>::max();
@@ -94,19 +94,19 @@ bool Radau::advance(double limit) {
       break;
     }
     if (outcome != Newton::converged) {
-      if (fixed && fresh_) return false;
+      if (fixed && is_.fresh) return false;
       // A matrix of an earlier state is made anew first.
       ++motion_.equations().evaluator().counters.rejected;
-      if (fresh_ || outcome == Newton::failed) h_ = h / 2;
-      linearized_ = false;
+      if (is_.fresh || outcome == Newton::failed) h_ = h / 2;
+      is_.linearized = false;
       // The stages before are a good guess of shorter ones, unless there were none or they lead to nowhere.
-      if (outcome == Newton::failed) has_stages_ = false;
+      if (outcome == Newton::failed) is_.has_stages = false;
       continue;
     }
     sum_up_work(h);
     switches_ = motion_.switches().found();
     const double error = fixed ? 0 : std::max(error_of_step(h), error_of_work(h));
-    const double allowed = rejected_ || switches_.cables ? rough_part * scale_.strict_part() : 1;
+    const double allowed = is_.rejected || switches_.cables ? rough_part * scale_.strict_part() : 1;
     if (!(error < allowed)) {
       reject(h, error / allowed);
       continue;
@@ -152,21 +152,21 @@ void Radau::accept(double h, double error) {
   last_error_ = std::max(error, 1e-2);
   // The matrix changes with the step, and corrections become smaller by as much less.
   if (convergence_ > 0) ratio = std::min(ratio, std::sqrt(slowest_convergence / convergence_));
-  ratio = std::clamp(ratio, largest_cut, rejected_ ? 1.0 : most_ratio);
+  ratio = std::clamp(ratio, largest_cut, is_.rejected ? 1.0 : most_ratio);
   const bool keeps = convergence_ < keeps_matrix;
   h_ = keeps && ratio >= 1 && ratio <= not_worth_it ? h : h * ratio;
-  linearized_ = keeps;
-  fresh_ = first_ = rejected_ = false;
-  has_stages_ = true;
+  is_.linearized = keeps;
+  is_.fresh = is_.first = is_.rejected = false;
+  is_.has_stages = true;
   last_h_ = h;
 }
 
 void Radau::reject(double h, double error) {
   ++motion_.equations().evaluator().counters.rejected;
-  h_ = first_ ? h / 10 : h * std::clamp(step_safety / std::pow(error, 0.25), largest_cut, 0.9);
+  h_ = is_.first ? h / 10 : h * std::clamp(step_safety / std::pow(error, 0.25), largest_cut, 0.9);
   if (!std::isfinite(error)) h_ = h / 10;
-  rejected_ = true;
-  if (!fresh_) linearized_ = false;
+  is_.rejected = true;
+  if (!is_.fresh) is_.linearized = false;
 }
 
 void Radau::interpolate(double t, std::span<double> y) {

@@ -88,7 +88,9 @@ class Radau final : public CrossingIntegrator {
   ImplicitMatrix matrix_;
   ErrorScale scale_;
   double h_ = 0, t_new_ = 0, factored_h_ = 0, last_h_ = 0, last_error_ = 0;
-  bool linearized_ = false, fresh_ = false, has_stages_ = false, rejected_ = false, first_ = true;
+  struct {
+    bool linearized = false, fresh = false, has_stages = false, rejected = false, first = true;
+  } is_;
   Smooth smooth_ = Smooth::unknown;  // the last step
   StepSwitches::Found switches_;     // in the step that is tried
   double convergence_ = 0;

@@ -17,7 +17,7 @@ constexpr double hopeless = 10;
 // The polynomial through the stages of the last step, beyond its end.
 void Radau::predict(double h) {
   const std::size_t n2 = 2 * motion_.coordinates();
-  if (!has_stages_) {
+  if (!is_.has_stages) {
     for (auto& z : z_) std::fill(z.begin(), z.end(), 0.0);
     return;
   }
@@ -42,7 +42,7 @@ void Radau::predict(double h) {
 // Within the step, where its second stage is expected: what the matrix misses at the stages is half of what it would at
 // one end. Multipliers are those of that place: the last evaluation may be of another one, or of a row.
 bool Radau::linearize(double h) {
-  const double t = has_stages_ ? t_ + radau_tableau().c[1] * h : t_;
+  const double t = is_.has_stages ? t_ + radau_tableau().c[1] * h : t_;
   std::copy(y_.begin(), y_.end(), y_stage_.begin());
   for (std::size_t k = 0; k < 2 * motion_.coordinates(); ++k) y_stage_[k] += z_[1][k];
   if (motion_.derivative(t, Side::after, y_stage_, error_) && matrix_.linearize(t, Side::after, y_stage_)) return true;
@@ -51,10 +51,10 @@ bool Radau::linearize(double h) {
 
 // The matrix for a step of this length.
 bool Radau::prepare(double h) {
-  if (linearized_ && factored_h_ == h) return true;
-  if (!linearized_) {
+  if (is_.linearized && factored_h_ == h) return true;
+  if (!is_.linearized) {
     if (!linearize(h)) return false;
-    linearized_ = fresh_ = true;
+    is_.linearized = is_.fresh = true;
   }
   const RadauTableau& table = radau_tableau();
   const std::complex<double> pair(table.pair_real / h, table.pair_imaginary / h);
@@ -152,7 +152,7 @@ double Radau::error_of_step(double h) {
     return size_of(std::span(error_).first(n2), h, 1);
   };
   const double size = estimate(slope_);
-  if (size < 1 || !(first_ || rejected_)) return size;
+  if (size < 1 || !(is_.first || is_.rejected)) return size;
   // Beside a fast transient f(y) is that of a state which the motion has left: once more from where the error leads.
   std::copy(y_.begin(), y_.end(), y_stage_.begin());
   for (std::size_t k = 0; k < n2; ++k) y_stage_[k] += error_[k];

@@ -24,8 +24,8 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options)
   for (std::vector<double>* y : {&y_, &y_before_, &y_new_, &y_stage_, &slope_, &slope_new_}) {
     y->assign(motion_.size(), 0.0);
   }
-  error_.resize(motion_.size());
-  error_low_.resize(2 * motion_.coordinates());
+  error_.high.resize(motion_.size());
+  error_.low.resize(2 * motion_.coordinates());
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
   scale_.length = motion_.length_scale();
@@ -148,8 +148,8 @@ bool RungeKutta::evaluate_stages(double h) {
   }
   if (trials_.project_stages() || watching) ratios_.find_roughness(table.b);
   stage_.combine(table.b, h, y_, y_new_);
-  stage_.combine(table.error, 1, {}, error_);
-  if (table.order == 8) stage_.combine(table.error_low, 1, {}, error_low_);
+  stage_.combine(table.error, 1, {}, error_.high);
+  if (table.order == 8) stage_.combine(table.error_low, 1, {}, error_.low);
   return true;
 }
 
@@ -198,7 +198,7 @@ bool RungeKutta::watches_energy() const {
 bool RungeKutta::tells_work() const { return projects() && energy_.tells_work(motion_); }
 
 BalancedEnds RungeKutta::balanced_ends(double t, double h, std::span<const double> before, std::span<double> y) const {
-  return {.t = t, .h = h, .y_before = before, .y = y, .error = error_};
+  return {.t = t, .h = h, .y_before = before, .y = y, .error = error_.high};
 }
 
 // Balances the step from y_ to y_new_, of size h, which was projected. False: it has lost its way.
@@ -207,7 +207,7 @@ bool RungeKutta::balance(double h) {
   if (watches_energy()) {
     return energy_.restore(
         motion_,
-        {.ends = ends, .errors = step_error_ + rounding_of_velocity(h), .scale = scale_, .weights = tableau().b});
+        {.ends = ends, .errors = error_.of_step + rounding_of_velocity(h), .scale = scale_, .weights = tableau().b});
   }
   if (work_told_) energy_.restore_work(motion_, ends);
   return true;

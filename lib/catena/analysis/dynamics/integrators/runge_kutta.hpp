@@ -164,7 +164,10 @@ class RungeKutta final : public Integrator {
   std::vector<double> y_before_, y_new_, y_stage_, slope_, slope_new_;
   Stages stage_;
   DenseOutput dense_;
-  std::vector<double> error_, error_low_;  // [q, qd, work], [q, qd]
+  struct {
+    std::vector<double> high, low;  // [q, qd, work], [q, qd]
+    double of_step = 1;             // that is accepted, in tolerances, at least 1
+  } error_;
   StepOrder order_;
   StageRatios ratios_;
   CrossingTrials trials_;
@@ -174,7 +177,6 @@ class RungeKutta final : public Integrator {
   bool work_told_ = false;  // work of drivers in the last step is that of its balance
   std::int64_t projected_steps_ = 0;
   StepSwitches::Found switches_;  // in the step that is tried
-  double step_error_ = 1;         // of the step that is accepted, in tolerances, at least 1
 };
 
 }  // namespace catena

@@ -27,14 +27,14 @@ double RungeKutta::error_size(double h) {
     const double v_unit = scale_.velocity_unit(c, h, v[c]);
     // Where nothing has moved yet velocities have no scale but that of the positions that they grow into.
     const double q_scale = 1 / scale_.position_unit(c, h), v_scale = v_unit > 0 ? 1 / v_unit : std::abs(h) * q_scale;
-    const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
+    const double q_error = error_.high[c] * q_scale, v_error = error_.high[offset + c] * v_scale;
     const double size = q_error * q_error + v_error * v_error;
     if (!(size <= high)) {
       high = size;
       culprit_ = static_cast<int>(c);
     }
     if (!two) continue;
-    const double q_low = error_low_[c] * q_scale, v_low = error_low_[offset + c] * v_scale;
+    const double q_low = error_.low[c] * q_scale, v_low = error_.low[offset + c] * v_scale;
     low = std::max(low, q_low * q_low + v_low * v_low);
   }
   if (!two) return std::abs(h) * std::sqrt(high);
@@ -58,8 +58,8 @@ void RungeKutta::add_error(std::span<double> error) const {
     double high = 0, low = 0;
     for (std::size_t c = 0; c < moving; ++c) {
       const double unit = c % 3 == 2 ? turn : 1;
-      high = std::max(high, unit * std::abs(error_[offset + c]));
-      low = std::max(low, unit * std::abs(error_low_[offset + c]));
+      high = std::max(high, unit * std::abs(error_.high[offset + c]));
+      low = std::max(low, unit * std::abs(error_.low[offset + c]));
     }
     factor = high > 0 ? high / std::sqrt(high * high + 0.01 * low * low) : 0;
   }
@@ -79,8 +79,8 @@ void RungeKutta::add_error(std::span<double> error) const {
   const bool is_stiff = lies_beside && h * da > stiff * (dv + std::sqrt(da * dq));
   factor *= is_stiff ? std::numeric_limits<double>::quiet_NaN() : h;
   for (std::size_t c = 0; c < moving; ++c) {
-    error[c] += factor * error_[c];
-    error[offset + c] += factor * error_[offset + c];
+    error[c] += factor * error_.high[c];
+    error[offset + c] += factor * error_.high[offset + c];
   }
 }
 
@@ -119,8 +119,8 @@ double RungeKutta::error_of_work(double h) const {
 double RungeKutta::filtered_error(double h, double raw) {
   const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
   EquationsOfMotion& equations = motion_.equations();
-  for (std::vector<double>* error : {&error_, &error_low_}) {
-    if (error == &error_low_ && tableau().order == 5) break;
+  for (std::vector<double>* error : {&error_.high, &error_.low}) {
+    if (error == &error_.low && tableau().order == 5) break;
     equations.remove_forbidden(std::span(*error).first(moving));
     equations.remove_forbidden(std::span(*error).subspan(offset, moving));
   }

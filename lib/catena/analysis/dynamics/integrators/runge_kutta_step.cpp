@@ -143,7 +143,7 @@ RungeKutta::Trial RungeKutta::try_step(double limit, double& usual) {
     reject(h * std::min(growth, 1.0));
     return Trial::again;
   }
-  step_error_ = std::max(judged.error, 1.0);
+  error_.of_step = std::max(judged.error, 1.0);
   if (!judged.factored && !factorize_new_point()) return cut_short(h);
   if (trials_.ends_too_near(pivot_ratio()) && !turn_.is_under_way() && !lands && !is_fixed() && projects()) {
     if (const std::optional<double> other = trials_.detour(h, judged.error, ratios())) {

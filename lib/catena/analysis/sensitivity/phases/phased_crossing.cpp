@@ -176,7 +176,7 @@ bool PhasedDerivatives::cross_functions() {
   MotionPhase same = phase_;
   same.jumps.clear();
   same.functions_jump = true;
-  same.t = crossed_.emplace(to_);
+  same.t = crossed_.t.emplace(to_);
   return cross(same, instant_at(to_).rate);
 }
 
@@ -219,12 +219,12 @@ void PhasedDerivatives::begin(const MotionPhase& phase) {
     return;
   }
   // Seen as a jump of functions alone before contacts had their say.
-  if (crossed_ == to_) {
+  if (crossed_.t == to_) {
     for (Track& track : tracks_) track.end = track.before;
-    crossed_.reset();
+    crossed_.t.reset();
   }
   const std::vector<double> rate = rates_of(phase);
-  crossing_rate_ = rate;
+  crossed_.rate = rate;
   note_landings(phase, rate);
   if (!cross(phase, rate)) return;
   from_ = to_;

@@ -232,7 +232,7 @@ void PhasedDerivatives::cover(const MotionStretch& stretch) {
 }
 
 const DesignVector& PhasedDerivatives::end_of_step(const Track& track) const {
-  return crossed_ == to_ ? track.before : track.end;
+  return crossed_.t == to_ ? track.before : track.end;
 }
 
 // The stages that its interpolant has beyond those of the step.
@@ -267,7 +267,7 @@ bool PhasedDerivatives::find(const Snapshot& snapshot) {
     has_.interpolant = true;
   }
   // At a jump of functions the motion may show velocities of either side: its own are those after it.
-  const bool jumps = crossed_ == snapshot.t;
+  const bool jumps = crossed_.t == snapshot.t;
   const std::vector<CurvePlace>& places = snapshot.evaluator.curve_places();
   evaluator().go_to_curve_places(places);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
@@ -292,7 +292,7 @@ bool PhasedDerivatives::find(const Snapshot& snapshot) {
 }
 
 bool PhasedDerivatives::find_before(const Snapshot& snapshot) {
-  if (crossed_ != snapshot.t || !why().empty()) return false;
+  if (crossed_.t != snapshot.t || !why().empty()) return false;
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     const DesignVector& y = tracks_[k].before;
     if (k == 0 && !factorize(snapshot.t, Side::before, y)) return singular(snapshot.t);

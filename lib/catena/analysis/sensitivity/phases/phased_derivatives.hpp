@@ -159,8 +159,10 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
     bool has_step = true;
   };
   std::vector<Part> parts_;
-  std::optional<double> crossed_;      // where functions of time jumped last
-  std::vector<double> crossing_rate_;  // of the last instant at which a phase ended
+  struct {
+    std::optional<double> t;   // where functions of time jumped
+    std::vector<double> rate;  // of the instant at which a phase ended
+  } crossed_;                  // last
   // Of the end of the present phase, by the event or transition found there.
   std::map<int, std::vector<double>> found_;
   InstantRates phase_instants_;

@@ -134,9 +134,9 @@ std::vector<double> PhasedDerivatives::rates_of(const MotionPhase& phase) {
     const int number = static_cast<int>(events_.size()) + phase.ended_by;
     if (const auto found = found_.find(number); found != found_.end()) return found->second;
     const WatchedPlace& watched = phase_.watched[at(phase.ended_by)];
-    if (from_ == to_ && !crossing_rate_.empty() && has_passed(watched)) {
-      note_instant(*instants_, phase.t, crossing_rate_);
-      return crossing_rate_;
+    if (from_ == to_ && !crossed_.rate.empty() && has_passed(watched)) {
+      note_instant(*instants_, phase.t, crossed_.rate);
+      return crossed_.rate;
     }
     const auto own = rate_of_place(nullptr, watched);
     rate = own ? *own : std::vector<double>(none.size(), unknown);
