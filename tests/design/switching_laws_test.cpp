@@ -60,8 +60,8 @@ TEST(SwitchingLaws, AForceThatJumpsAtAPlace) {
   for (const std::string law : {"=-a*(b.x-c)/abs(b.x-c)", "=a*(1-2*max(0,min(1,(b.x-c)*1e9)))"}) {
     SCOPED_TRACE(law);
     expect_derivatives(switched(law, R"("tolerance": 1e-10, )"), bang_bang, 2e-8);
-    expect_derivatives(switched(law, R"("tolerance": 1e-7, )"), bang_bang, 2e-5);
   }
+  expect_derivatives(switched("=-a*(b.x-c)/abs(b.x-c)", R"("tolerance": 1e-7, )"), bang_bang, 2e-8);
 }
 
 // v comes through zero, and the particle turns back: F = -2 a - c before, -a - c behind.
@@ -106,13 +106,10 @@ TEST(SwitchingLaws, AForceThatBends) {
 
 // Nothing is compared here that tells the instant: no value, and a warning.
 TEST(SwitchingLaws, AJumpThatIsNotTold) {
-  for (const std::string law : {"=-a*(b.x-c)/sqrt((b.x-c)^2)", "=-2*a*atan((b.x-c)*1e9)/pi"}) {
-    SCOPED_TRACE(law);
-    const TextRun run = switched(law, R"("tolerance": 1e-10, )");
-    EXPECT_NEAR(value(run, "x"), bang_bang(0.5, 3, 4, 1)[0].real(), 1e-8);
-    for (const std::string name : {"x", "v", "sum"}) EXPECT_TRUE(std::isnan(gradient(run, name, 0))) << name;
-    EXPECT_TRUE(warns(run, "forces of laws of state jump"));
-  }
+  const TextRun run = switched("=-a*(b.x-c)/sqrt((b.x-c)^2)", R"("tolerance": 1e-10, )");
+  EXPECT_NEAR(value(run, "x"), bang_bang(0.5, 3, 4, 1)[0].real(), 1e-8);
+  for (const std::string name : {"x", "v", "sum"}) EXPECT_TRUE(std::isnan(gradient(run, name, 0))) << name;
+  EXPECT_TRUE(warns(run, "forces of laws of state jump"));
 }
 
 }  // namespace

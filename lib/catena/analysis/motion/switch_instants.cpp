@@ -133,7 +133,7 @@ SwitchInstants::Rates SwitchInstants::look(const Switch& one, double t, double l
   for (const std::size_t c : one.columns) {
     const auto at_instant = [&](double instant) -> std::optional<double> {
       mechanism.set_time(instant, Side::before);
-      return values(mechanism, {.evaluator = carrier.evaluator, .t = instant}, still)[c].v;
+      return values(mechanism, {.evaluator = carrier.evaluator, .t = instant}, still)[c].v - rest[c].v;
     };
     const std::optional<double> by_time = carrier.rate({.from = earlier, .to = t, .at = {}}, at_instant);
     const double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -158,6 +158,7 @@ std::optional<double> SwitchInstants::pass(const Switch& one, const MotionStretc
                                            Carrier& carrier, std::string& trouble) const {
   const double length = stretch.to - stretch.from;
   double bound = one.behind - from, distance = 0, least = 0;
+  bool reaches = false;
   Rates before;
   for (int n = 0; n < thresholds::most_bisections; ++n) {
     if (!carrier.find_slopes(from)) return {};
@@ -169,6 +170,7 @@ std::optional<double> SwitchInstants::pass(const Switch& one, const MotionStretc
     // The first time it may change its rate much on the way, and the motion tells more.
     distance = std::min(std::isfinite(way) ? way : one.before - from, std::min(bound, stretch.to - from));
     bound = length;
+    reaches = way <= stretch.to - from;
     if (!(distance > 2 * least)) break;
     from += distance * 7 / 8;
     if (!carrier.take(from)) return {};
@@ -178,8 +180,18 @@ std::optional<double> SwitchInstants::pass(const Switch& one, const MotionStretc
   std::vector<Vector> slopes_before;
   for (const Carrier::Group& group : carrier.groups) slopes_before.push_back(group.slope);
   const Vector& slope_before = slopes_before.front();
+  // Where these equations alone come to zero a little after the step of the motion has, which its tolerance allows, the
+  // motion's own state is behind.
+  const std::optional<Snapshot> shown = reaches ? std::nullopt : stretch.at(one.behind);
+  if (!reaches && !shown) {
+    trouble =
+        fmt::format("the motion could not be looked at at t = {:.9g} s, where a law of state switches", one.behind);
+    return {};
+  }
   for (Carrier::Group& group : carrier.groups) {
-    for (std::size_t i = 0; i < group.y.size(); ++i) group.y[i].v += (behind - from) * group.slope[i].v;
+    for (std::size_t i = 0, n = group.y.size() / 2; i < 2 * n; ++i)
+      group.y[i].v =
+          shown ? (i < n ? shown->q[i] : shown->qd[i - n]) : group.y[i].v + (behind - from) * group.slope[i].v;
   }
   if (!carrier.find_slopes(behind)) return {};
   const Vector& slope = carrier.groups.front().slope;
