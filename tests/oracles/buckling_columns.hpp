@@ -112,9 +112,9 @@ class BucklingColumn {
     return f;
   }
   std::vector<Real> raw_factors() const {
-    using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+    using Dense = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
     const auto n = static_cast<Eigen::Index>(lengths_.size());
-    Matrix c = Matrix::Zero(n, n), d = c;
+    Dense c = Dense::Zero(n, n), d = c;
     Real above = 0;
     for (Eigen::Index k = n - 1; k >= 0; --k) {
       const auto i = static_cast<std::size_t>(k);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "catena/analysis/dynamics/implicit/implicit_step.hpp"
 #include "catena/analysis/motion/step_growth.hpp"
@@ -50,6 +51,7 @@ void Alpha::begin_anew() {
   std::copy(accelerations().begin(), accelerations().end(), own_.begin());
   linearized_ = crossing_ = false;
   last_h_ = factored_h_ = 0;
+  expect_start();
 }
 
 void Alpha::observe(double h) {
@@ -86,7 +88,8 @@ bool Alpha::advance(double limit) {
       linearized_ = false;
       continue;
     }
-    const double error = fixed ? 0 : error_of_step(h);
+    double error = fixed ? 0 : error_of_step(h);
+    if (!fixed && last_h_ == 0 && error < 1 && is_long_start(h, remaining)) error = std::max(error, error_within(h));
     if (!(error < 1)) {
       ++evaluator.counters.rejected;
       h_ = h * std::clamp(step_safety / std::cbrt(error), largest_cut, step_safety);
@@ -192,6 +195,15 @@ double Alpha::error_of_step(double h) {
   for (std::size_t c = 0; c < n; ++c)
     change[c] = slope_new_[n + c] - slope_[n + c] - ratio * (slope_[n + c] - slope_before_[n + c]);
   return std::max({of_place, size_of(change, h, 0, h / 12, 1), error_of_work(h, ratio)});
+}
+
+// Of a first step what its two ends do not show.
+double Alpha::error_within(double h) {
+  const std::size_t n = motion_.coordinates();
+  const std::span<double> unseen = std::span(residual_).first(n);
+  find_unseen(h, accelerations(), std::span(slope_new_).subspan(n, n), unseen);
+  if (!motion_.derivative(t_new_, Side::before, y_new_, slope_new_)) return std::numeric_limits<double>::infinity();
+  return size_of(unseen, h, h * h / 2, h / 2, 1);
 }
 
 // Of the work of loads and of what dampers take, by the second difference of their powers: the trapezoid rule.

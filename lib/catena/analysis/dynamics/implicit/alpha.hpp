@@ -59,6 +59,7 @@ class Alpha final : public CrossingIntegrator {
   void place(double h);
   double size_of(std::span<const double> change, double h, double of_place, double of_velocity, double part);
   double error_of_step(double h);
+  double error_within(double h);
   double error_of_work(double h, double ratio) const;
   bool finish();
   void accept(double h, double error);

@@ -173,7 +173,7 @@ void Radau::sum_up_work(double h) {
 double Radau::error_of_work(double h) const {
   const RadauTableau& table = radau_tableau();
   const std::size_t usual = ErrorScale::judged(motion_.works()).size();
-  const bool of_drivers = switches_.any() && !tells_work();
+  const bool of_drivers = judges_drivers(switches_.any());
   double largest = 0;
   for (std::size_t place = 0; place < (of_drivers ? motion_.works() : usual); ++place) {
     const std::size_t k = 2 * motion_.coordinates() + place;

@@ -51,6 +51,7 @@ void Adams::forget() {
   k_before_ = 0;
   starting_ = true;
   crossing_ = false;
+  expect_start();
   h_ = scale_.rate() > 0 ? first_step * std::sqrt(scale_.tolerance()) / scale_.rate()
                          : std::numeric_limits<double>::max();
 }
@@ -149,6 +150,18 @@ double Adams::error_of_step(double h) {
   return std::sqrt(largest);
 }
 
+// Of a first step what its two ends do not show; the evaluator is at its end again. Infinite where forces have no
+// values.
+double Adams::error_within(double h) {
+  const std::size_t n = motion_.coordinates();
+  unseen_.resize(n);
+  find_unseen(h, std::span(difference_[1]).first(n), std::span(slope_).subspan(n, n), unseen_);
+  double largest = 0;
+  for (std::size_t c = 0; c < motion_.moving(); ++c) largest = std::max(largest, weight(c, h) * unseen_[c] / 2);
+  if (!motion_.derivative(t_new_, Side::before, y_new_, slope_)) return std::numeric_limits<double>::infinity();
+  return largest;
+}
+
 // What the corrector's last difference takes off error_of_step() is not known: with all of it claims of digits were
 // pessimistic by 1e6 in half of the columns of random mechanisms.
 void Adams::add_error(std::span<double> error) const {
@@ -163,7 +176,7 @@ double Adams::error_of_work(double h) const {
   // Of drivers as RungeKutta::error_of_work asks. What the past foretells of a step in which a power bends is wrong by
   // no more than it differs from the trapezoid rule.
   const StepSwitches::Found switches = motion_.switches().found();
-  const bool of_drivers = switches.any() && !tells_work();
+  const bool of_drivers = judges_drivers(switches.any());
   double largest = 0;
   for (std::size_t place = 0; place < (of_drivers ? motion_.works() : usual); ++place) {
     const std::size_t k = 2 * n + place;

@@ -48,11 +48,12 @@ class Adams final : public CrossingIntegrator {
   };
   void forget();
   bool advance_by_runge_kutta(double limit);
-  bool try_step(double h);
+  bool try_step(double h, double remaining);
   void predict(double h);
   double weight(std::size_t c, double h) const;
   Errors estimate(double h);
   double error_of_step(double h);
+  double error_within(double h);
   double weight_of_work(std::size_t place, double h) const;
   double error_of_work(double h) const;
   double estimate_above(double h) const;
@@ -72,7 +73,7 @@ class Adams final : public CrossingIntegrator {
   bool starting_ = true;
   int failures_ = 0;
   std::vector<std::vector<double>> difference_;  // of [qdd, power], numbered from 1
-  std::vector<double> y_new_, slope_;
+  std::vector<double> y_new_, slope_, unseen_;
   std::vector<double> predicted_, change_;  // [qdd, power]; what was evaluated less what was predicted
 };
 

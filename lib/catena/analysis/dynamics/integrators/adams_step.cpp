@@ -35,14 +35,14 @@ bool Adams::advance(double limit) {
     if (!lands && !fixed && 2 * h > remaining) h = remaining / 2;
     if ((h < smallest && !lands) || failures_ > most_rejections) return false;
     t_new_ = lands ? limit : t_ + h;
-    if (try_step(h)) return true;
+    if (try_step(h, remaining)) return true;
     if (fixed && !crossing_) return false;
   }
   return advance_by_runge_kutta(limit);
 }
 
 // False: too large an error, in which case order and step were reduced, or a singular position nearby.
-bool Adams::try_step(double h) {
+bool Adams::try_step(double h, double remaining) {
   const bool fixed = options_.fixed_step > 0;
   const std::size_t n = motion_.coordinates();
   predict(h);
@@ -63,6 +63,13 @@ bool Adams::try_step(double h) {
   if (!(error <= 1) && std::isfinite(error)) error = compared_with_end(h, error);
   if (!(error <= 1) && std::isfinite(error)) error = filtered(h, error);
   if (!fixed && motion_.works() > 0) error = std::max(error, error_of_work(h));
+  if (!fixed && k_ == 1 && error <= 1 && is_long_start(h, remaining)) {
+    error = error_within(h);
+    if (!(error <= 1)) {
+      fail(h, std::isfinite(error) ? error : 1e10, true);
+      return false;
+    }
+  }
   if (!(error <= 1)) {
     fail(h, std::isfinite(error) ? errors.now : 1e10, lower);
     return false;

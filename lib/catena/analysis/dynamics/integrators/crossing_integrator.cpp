@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "catena/linalg/rank/dependence.hpp"
 
@@ -68,6 +70,30 @@ void CrossingIntegrator::tell_work_between(double t, std::span<double> y) const 
   equations.project_position(motion_.q(y), 4);
   equations.project_velocity(motion_.qd(y), rate());
   tell_work(t, t_, y_, y);
+}
+
+void CrossingIntegrator::find_unseen(double h, std::span<const double> begin, std::span<const double> end,
+                                     std::span<double> unseen) {
+  const std::size_t n = motion_.coordinates();
+  y_inside_.assign(y_.begin(), y_.end());
+  slope_inside_.resize(y_.size());
+  std::fill(unseen.begin(), unseen.end(), 0.0);
+  for (int stage = 1; stage < dormand_prince_8().stages; ++stage) {
+    const double part = dormand_prince_8().c[static_cast<std::size_t>(stage)], s = part * h;
+    if (part >= 1) continue;
+    for (std::size_t c = 0; c < n; ++c) {
+      y_inside_[c] = y_[c] + s * (y_[n + c] + s / 2 * begin[c]);
+      y_inside_[n + c] = y_[n + c] + s * begin[c];
+    }
+    if (!motion_.derivative(t_ + s, Side::after, y_inside_, slope_inside_)) {
+      std::fill(unseen.begin(), unseen.end(), std::numeric_limits<double>::infinity());
+      return;
+    }
+    for (std::size_t c = 0; c < n; ++c) {
+      const double straight = begin[c] + part * (end[c] - begin[c]);
+      unseen[c] = std::max(unseen[c], std::abs(slope_inside_[n + c] - straight));
+    }
+  }
 }
 
 bool CrossingIntegrator::has_crossed() {

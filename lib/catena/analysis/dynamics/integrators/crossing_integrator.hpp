@@ -51,6 +51,17 @@ class CrossingIntegrator : public Integrator {
   bool tells_work() const { return energy_.tells_work(motion_); }
   /// The same within the last step, for a y that is near the constraints, from the end of the step.
   void tell_work_between(double t, std::span<double> y) const;
+  /// Whether errors of the work of single drivers bound the step, in which forces switch or not.
+  bool judges_drivers(bool switches) const { return energy_.leaves_drivers(motion_, switches); }
+  /// How far accelerations within a first step of length h leave the straight line from `begin` to `end`, of which
+  /// methods of low order know alone: forces may be zero at both. The largest at the stages of order 8, on the way that
+  /// the first one gives; infinite where there are none. The evaluator is elsewhere then.
+  void find_unseen(double h, std::span<const double> begin, std::span<const double> end, std::span<double> unseen);
+  /// Whether a first step of length h needs that, or needed it when it was longer: forces that grow from zero ask for
+  /// shorter ones by themselves.
+  bool is_long_start(double h, double remaining) { return starts_long_ = starts_long_ || 2 * h >= remaining; }
+  /// The next step is a first one.
+  void expect_start() { starts_long_ = false; }
   /// Counts a step across, and says whether the passage lies behind it: then another method may go on.
   bool has_crossed();
   /// The memory of a scale, with step (s) and pivots.
@@ -63,6 +74,8 @@ class CrossingIntegrator : public Integrator {
 
  private:
   StepEnergy energy_;
+  std::vector<double> y_inside_, slope_inside_;
+  bool starts_long_ = false;
   double largest_ratio_ = 0;
   std::int64_t crossing_steps_ = 0;
 };

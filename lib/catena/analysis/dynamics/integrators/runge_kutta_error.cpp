@@ -87,12 +87,14 @@ void RungeKutta::add_error(std::span<double> error) const {
 // The error of the loads' work and of what dampers take in units of what the balance of energy may miss: where a load
 // changes in time and moves nothing, and where drivers move all, no other error says so. Of drivers nothing is asked,
 // as their loads have no bound near singular positions, but where a force switches within the step and the balance does
-// not tell what they do: a cable that pulls on driven bodies alone has no part in the errors of the motion. In a step
-// with a switch both estimates of order 8 together bound the error, as neither does alone: it is 2.9 and 3.1 times both
-// at most if a power bends or jumps anywhere; of order 5 the trapezoid rule takes the place of the other one.
+// not tell what they do: a cable that pulls on driven bodies alone has no part in the errors of the motion; and where
+// several drivers move all of the mechanism, of which the balance tells the sum, and nothing else bounds steps. In a
+// step with a switch both estimates of order 8 together bound the error, as neither does alone: it is 2.9 and 3.1 times
+// both at most if a power bends or jumps anywhere; of order 5 the trapezoid rule takes the place of the other one.
 double RungeKutta::error_of_work(double h) const {
   const std::size_t usual = ErrorScale::judged(motion_.works()).size();
-  const bool of_drivers = switches_.any() && !tells_work() && !trials_.project_stages() && !dips();
+  const bool of_drivers = (projects() ? energy_.leaves_drivers(motion_, switches_.any()) : switches_.any()) &&
+                          !trials_.project_stages() && !dips();
   double largest = 0;
   for (std::size_t place = 0; place < (of_drivers ? motion_.works() : usual); ++place) {
     const std::size_t k = 2 * motion_.coordinates() + place;

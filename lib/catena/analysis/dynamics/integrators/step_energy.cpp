@@ -77,6 +77,11 @@ bool StepEnergy::watches(double ratio, bool crossing) const {
 
 bool StepEnergy::tells_work(const Motion& motion) const { return tells_ == Tells::work && freedoms(motion) == 0; }
 
+bool StepEnergy::leaves_drivers(const Motion& motion, bool switches) const {
+  if (!tells_work(motion)) return switches;
+  return motion.works() > ErrorScale::work_of_loads + 2;
+}
+
 int StepEnergy::freedoms(const Motion& motion) const {
   EquationsOfMotion& equations = motion.equations();
   return equations.plan().columns - acting_rows_ + equations.left_out().count();

@@ -66,6 +66,10 @@ class StepEnergy {
   bool watches(double ratio, bool crossing) const;
   /// Whether the balance of steps, if they are projected, says what drivers do: these move all of the mechanism.
   bool tells_work(const Motion& motion) const;
+  /// Whether it leaves the integral of some driver's power to be judged by its own error: of several drivers the
+  /// balance says what they do together, and of a step in which no force switches nothing is asked where one of them,
+  /// or the motion's own error, tells enough.
+  bool leaves_drivers(const Motion& motion, bool switches) const;
   /// Power P at a stage, at the evaluator's place, that of y.
   void note_power(const Motion& motion, std::size_t stage, std::span<const double> y);
   /// Balances a step. False: more energy is missing than the error of the step and its rounding explain.
