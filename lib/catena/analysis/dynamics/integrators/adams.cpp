@@ -111,7 +111,7 @@ Adams::Errors Adams::estimate(double h) {
   for (std::size_t c = 0; c < motion_.moving(); ++c) {
     if (compare(c, weight(c, h))) culprit_ = static_cast<int>(c);
   }
-  for (const std::size_t place : ErrorScale::judged(motion_.works()))
+  for (std::size_t place = 0; place < judged_works(false); ++place)
     compare(motion_.coordinates() + place, weight_of_work(place, h));
   errors.now *= history_.sigma(k_ + 1, h) * steady_error[k_];
   if (one) errors.below *= history_.sigma(k_, h) * steady_error[k_ - 1];
@@ -127,7 +127,7 @@ double Adams::estimate_above(double h) const {
     largest = std::max(largest, unit * std::abs(slope_[n + c] - predicted_[c] - difference_[k_ + 1][c]));
   };
   for (std::size_t c = 0; c < motion_.moving(); ++c) compare(c, weight(c, h));
-  for (const std::size_t place : ErrorScale::judged(motion_.works())) compare(n + place, weight_of_work(place, h));
+  for (std::size_t place = 0; place < judged_works(false); ++place) compare(n + place, weight_of_work(place, h));
   return largest * steady_error[k_ + 1];
 }
 
@@ -168,6 +168,11 @@ void Adams::add_error(std::span<double> error) const {
   std::fill(error.begin(), error.end(), std::numeric_limits<double>::quiet_NaN());
 }
 
+// The first of these integrals; those of drivers follow the others.
+std::size_t Adams::judged_works(bool switches) const {
+  return judges_drivers(switches) ? motion_.works() : ErrorScale::judged(motion_.works()).size();
+}
+
 double Adams::error_of_work(double h) const {
   const std::size_t n = motion_.coordinates();
   const double once = weights_.integral[k_] / weights_.value[k_] - weights_.integral[k_ + 1] / weights_.value[k_ + 1];
@@ -176,9 +181,8 @@ double Adams::error_of_work(double h) const {
   // Of drivers as RungeKutta::error_of_work asks. What the past foretells of a step in which a power bends is wrong by
   // no more than it differs from the trapezoid rule.
   const StepSwitches::Found switches = motion_.switches().found();
-  const bool of_drivers = judges_drivers(switches.any());
   double largest = 0;
-  for (std::size_t place = 0; place < (of_drivers ? motion_.works() : usual); ++place) {
+  for (std::size_t place = 0; place < judged_works(switches.any()); ++place) {
     const std::size_t k = 2 * n + place;
     double error = std::abs(once * (slope_[k] - predicted_[n + place]));
     if (place < usual ? switches.laws : switches.any()) {

@@ -55,6 +55,7 @@ class Adams final : public CrossingIntegrator {
   double error_of_step(double h);
   double error_within(double h);
   double weight_of_work(std::size_t place, double h) const;
+  std::size_t judged_works(bool switches) const;
   double error_of_work(double h) const;
   double estimate_above(double h) const;
   double filtered(double h, double raw);
