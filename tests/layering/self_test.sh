@@ -149,6 +149,7 @@ if [[ "$listed" != "$expected" ]]; then
   printf 'constants are listed as\n%s\nand not as\n%s\n' "$listed" "$expected"
   failures=$((failures + 1))
 fi
+sed -i '/alone/d' "$tree/lib/catena/analysis/x/a.cpp"  # it has no reason
 # few CLASS LINE COUNT: with so many such lines the count must fail.
 few() {
   cases=$((cases + 1))
