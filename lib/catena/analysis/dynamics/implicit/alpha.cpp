@@ -89,7 +89,8 @@ bool Alpha::advance(double limit) {
       continue;
     }
     double error = fixed ? 0 : error_of_step(h);
-    if (!fixed && last_h_ == 0 && error < 1 && is_long_start(h, remaining)) error = std::max(error, error_within(h));
+    if (!fixed && last_h_ == 0 && error < 1 && is_long_start(scale_.rate(), remaining))
+      error = std::max(error, error_within(h));
     if (!(error < 1)) {
       ++evaluator.counters.rejected;
       h_ = h * std::clamp(step_safety / std::cbrt(error), largest_cut, step_safety);

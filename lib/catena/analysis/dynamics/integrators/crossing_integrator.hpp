@@ -57,9 +57,9 @@ class CrossingIntegrator : public Integrator {
   /// methods of low order know alone: forces may be zero at both. The largest at the stages of order 8, on the way that
   /// the first one gives; infinite where there are none. The evaluator is elsewhere then.
   void find_unseen(double h, std::span<const double> begin, std::span<const double> end, std::span<double> unseen);
-  /// Whether a first step of length h needs that, or needed it when it was longer: forces that grow from zero ask for
-  /// shorter ones by themselves.
-  bool is_long_start(double h, double remaining) { return starts_long_ = starts_long_ || 2 * h >= remaining; }
+  /// Whether a first step needs that: at its rate, 1/s, hardly anything moves on the way to the limit, as where forces
+  /// begin with rounding.
+  bool is_long_start(double rate, double remaining) { return starts_long_ = starts_long_ || rate * remaining <= 1; }
   /// The next step is a first one.
   void expect_start() { starts_long_ = false; }
   /// Counts a step across, and says whether the passage lies behind it: then another method may go on.
