@@ -72,13 +72,7 @@ bool PhasedMeasures::divide(std::size_t& k, int parts) {
     part.from = part.to;
     part.begin = part.end;
   }
-  const auto place = steps_.erase(steps_.begin() + static_cast<std::ptrdiff_t>(k - 1));
-  steps_.insert(place, some.begin(), some.end());
-  std::map<std::size_t, Crossing> moved;
-  for (auto& [number, crossing] : crossings_)
-    moved.emplace(number < k ? number : number + some.size() - 1, std::move(crossing));
-  crossings_ = std::move(moved);
-  k += some.size() - 1;
+  replace_by_parts(steps_, crossings_, k, some);
   return true;
 }
 

@@ -17,7 +17,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "catena/analysis/motion/tableau.hpp"
@@ -60,6 +63,19 @@ int parts_for(double excess);
 /// Whether parts of a step from that instant may be as short as h: their stages are to be at instants that differ. What
 /// a bend of forces leaves in a part falls with its length, and is below any tolerance before.
 bool is_long_enough(double h, double from);
+
+/// Puts parts in the place of step k, counted from 1; k is the last part then, and what is kept by the number of a
+/// step moves with it.
+template <class Step, class Kept>
+void replace_by_parts(std::vector<Step>& steps, std::map<std::size_t, Kept>& kept, std::size_t& k,
+                      const std::vector<Step>& parts) {
+  const auto place = steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(k - 1));
+  steps.insert(place, parts.begin(), parts.end());
+  std::map<std::size_t, Kept> moved;
+  for (auto& [number, one] : kept) moved.emplace(number < k ? number : number + parts.size() - 1, std::move(one));
+  kept = std::move(moved);
+  k += parts.size() - 1;
+}
 
 /// When the way back looks at e, which costs about as much as a step: what y^ is made of changes slowly, and every 16th
 /// is looked at, as many as a step has stages, with one that may miss too much by its length.

@@ -1,5 +1,5 @@
-// The slack L - l of every elastic cable, and rope over pulleys, that acts as a
-// force: f = k max(-slack, 0) bends where it changes its sign. Units: m.
+// The slack L - l of every elastic cable, and rope over pulleys, that acts as a force: f = k max(-slack, 0) bends where
+// it changes its sign. Units: m.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,7 @@
 
 namespace catena {
 
-/// Calls f(slack, length, id) for every cable, and then for every rope, at the
-/// evaluator's configuration.
+/// Calls f(slack, length, id) for every cable, and then for every rope, at the evaluator's configuration.
 template <class F>
 void for_each_slack(const Evaluator& evaluator, F&& f) {
   const Plan& plan = evaluator.plan();

@@ -1,10 +1,8 @@
-// What forces do within a step that its stages may not show: laws of state that
-// take another branch, and elastic cables and ropes that become taut or slack,
-// by samples at the stages.
+// What forces do within a step that its stages may not show: laws of state that take another branch, and elastic cables
+// and ropes that become taut or slack, by samples at the stages.
 //
-// There a force bends. Integrals over such a step are of low order, and an
-// estimate of their error that takes powers for smooth may be small by chance:
-// methods judge these steps otherwise. Source: columns/switches.hpp,
+// There a force bends. Integrals over such a step are of low order, and an estimate of their error that takes powers
+// for smooth may be small by chance: methods judge these steps otherwise. Source: columns/switches.hpp,
 // analysis/run/cable_slack.hpp.
 #pragma once
 
@@ -25,8 +23,7 @@ class StepSwitches {
   };
 
   explicit StepSwitches(const Evaluator& evaluator) : evaluator_(evaluator) {}
-  /// A step from t, s, is tried: the sample that was taken there, by the step
-  /// before, is its first.
+  /// A step from t, s, is tried: the sample that was taken there, by the step before, is its first.
   void begin_step(double t);
   /// At the evaluator's configuration; one at the same time is replaced.
   void note(double t, std::span<const double> qd);
@@ -44,8 +41,7 @@ class StepSwitches {
   const Evaluator& evaluator_;
   LawSwitches laws_;
   bool known_ = false, cables_ = false;  // what there is; whether there are any
-  // Stages of a step are fewer; what is evaluated for rows between its ends
-  // does not count.
+  // Stages of a step are fewer; what is evaluated for rows between its ends does not count.
   std::array<Sample, 16> samples_;
   std::size_t count_ = 0;
 };

@@ -148,13 +148,7 @@ bool MotionAdjoint::divide(std::size_t& k, int parts) {
   part.to = whole.to;
   part.end = whole.end;
   some.push_back(part);
-  const auto place = steps_.erase(steps_.begin() + static_cast<std::ptrdiff_t>(k - 1));
-  steps_.insert(place, some.begin(), some.end());
-  std::map<std::size_t, MotionCrossing> moved;
-  for (auto& [number, crossing] : crossings_)
-    moved.emplace(number < k ? number : number + some.size() - 1, std::move(crossing));
-  crossings_ = std::move(moved);
-  k += some.size() - 1;
+  replace_by_parts(steps_, crossings_, k, some);
   return true;
 }
 

@@ -51,7 +51,6 @@ void Alpha::begin_anew() {
   std::copy(accelerations().begin(), accelerations().end(), own_.begin());
   linearized_ = crossing_ = false;
   last_h_ = factored_h_ = 0;
-  expect_start();
 }
 
 void Alpha::observe(double h) {

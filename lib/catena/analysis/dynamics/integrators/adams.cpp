@@ -51,7 +51,6 @@ void Adams::forget() {
   k_before_ = 0;
   starting_ = true;
   crossing_ = false;
-  expect_start();
   h_ = scale_.rate() > 0 ? first_step * std::sqrt(scale_.tolerance()) / scale_.rate()
                          : std::numeric_limits<double>::max();
 }

@@ -63,15 +63,10 @@ bool Adams::try_step(double h, double remaining) {
   if (!(error <= 1) && std::isfinite(error)) error = compared_with_end(h, error);
   if (!(error <= 1) && std::isfinite(error)) error = filtered(h, error);
   if (!fixed && motion_.works() > 0) error = std::max(error, error_of_work(h));
-  if (!fixed && k_ == 1 && error <= 1 && is_long_start(scale_.rate(), remaining)) {
-    error = error_within(h);
-    if (!(error <= 1)) {
-      fail(h, std::isfinite(error) ? error : 1e10, true);
-      return false;
-    }
-  }
+  const bool unseen = !fixed && k_ == 1 && error <= 1 && is_long_start(scale_.rate(), remaining);
+  if (unseen) error = error_within(h);
   if (!(error <= 1)) {
-    fail(h, std::isfinite(error) ? errors.now : 1e10, lower);
+    fail(h, !std::isfinite(error) ? 1e10 : unseen ? error : errors.now, lower);
     return false;
   }
   if (!finish(h)) {

@@ -59,9 +59,7 @@ class CrossingIntegrator : public Integrator {
   void find_unseen(double h, std::span<const double> begin, std::span<const double> end, std::span<double> unseen);
   /// Whether a first step needs that: at its rate, 1/s, hardly anything moves on the way to the limit, as where forces
   /// begin with rounding.
-  bool is_long_start(double rate, double remaining) { return starts_long_ = starts_long_ || rate * remaining <= 1; }
-  /// The next step is a first one.
-  void expect_start() { starts_long_ = false; }
+  static bool is_long_start(double rate, double remaining) { return rate * remaining <= 1; }
   /// Counts a step across, and says whether the passage lies behind it: then another method may go on.
   bool has_crossed();
   /// The memory of a scale, with step (s) and pivots.
@@ -75,7 +73,6 @@ class CrossingIntegrator : public Integrator {
  private:
   StepEnergy energy_;
   std::vector<double> y_inside_, slope_inside_;
-  bool starts_long_ = false;
   double largest_ratio_ = 0;
   std::int64_t crossing_steps_ = 0;
 };

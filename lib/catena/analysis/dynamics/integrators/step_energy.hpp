@@ -66,9 +66,8 @@ class StepEnergy {
   bool watches(double ratio, bool crossing) const;
   /// Whether the balance of steps, if they are projected, says what drivers do: these move all of the mechanism.
   bool tells_work(const Motion& motion) const;
-  /// Whether it leaves the integral of some driver's power to be judged by its own error: of several drivers the
-  /// balance says what they do together, and of a step in which no force switches nothing is asked where one of them,
-  /// or the motion's own error, tells enough.
+  /// Whether errors of the drivers' integrals are to bound the step: of several drivers the balance tells the sum
+  /// alone; where it tells nothing, of a step in which forces switch (RungeKutta::error_of_work).
   bool leaves_drivers(const Motion& motion, bool switches) const;
   /// Power P at a stage, at the evaluator's place, that of y.
   void note_power(const Motion& motion, std::size_t stage, std::span<const double> y);

@@ -87,6 +87,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   bool slope(std::size_t group, double t, Side side, const DesignVector& y, DesignVector& out);
   bool make_step(double h);
   // Steps in parts: phased_parts.cpp.
+  bool step_on(double to);
   bool cover_part(const MotionStretch& stretch, double to);
   /// The same, in parts of it where it is too long for derivatives (motion/derivative_error.hpp).
   bool cover_in_parts(const MotionStretch& stretch, double to);

@@ -8,14 +8,18 @@
 namespace catena {
 
 // The next part of the step, behind those that have been covered.
-bool PhasedDerivatives::cover_part(const MotionStretch& stretch, double to) {
+bool PhasedDerivatives::step_on(double to) {
   keep_part();
   for (Track& track : tracks_) track.begin = track.end;
   from_ = to_;
   to_ = to;
   has_.step = true;
   has_.interpolant = false;
-  return make_step(to_ - from_) && take_values(stretch, to_, &Track::end) && project(to_, Side::before, &Track::end);
+  return make_step(to_ - from_);
+}
+
+bool PhasedDerivatives::cover_part(const MotionStretch& stretch, double to) {
+  return step_on(to) && take_values(stretch, to_, &Track::end) && project(to_, Side::before, &Track::end);
 }
 
 // As if that part had not been covered; `is_first` of the step.

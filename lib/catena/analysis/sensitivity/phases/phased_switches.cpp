@@ -18,15 +18,7 @@ bool PhasedDerivatives::cover_between(const MotionStretch& stretch, std::span<co
     }
     return true;
   };
-  carrier.take = [&](double to) {
-    keep_part();
-    for (Track& track : tracks_) track.begin = track.end;
-    from_ = to_;
-    to_ = to;
-    has_.step = true;
-    has_.interpolant = false;
-    return make_step(to_ - from_) && project(to_, Side::before, &Track::end);
-  };
+  carrier.take = [&](double to) { return step_on(to) && project(to_, Side::before, &Track::end); };
   auto next = switches.begin();
   std::vector<double> all;
   for (const double end : ends) {
