@@ -236,7 +236,11 @@ Path::March::Progress Path::March::step() {
     if (trial.iterations <= few_iterations) length_ = std::min(1.5 * length_, options_.arc);
     return Progress::going;
   }
-  // Nothing ahead: the path ends, or turns back where a stiffness jumps.
+  return turn_back();
+}
+
+// Nothing ahead: the path ends, or turns back where a stiffness jumps.
+Path::March::Progress Path::March::turn_back() {
   if (system_.refused_value() || unjudged_) return Progress::stuck;
   Side behind;
   bool written = false;

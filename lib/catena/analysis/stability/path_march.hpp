@@ -98,6 +98,7 @@ class Path::March {
   bool go_round(Side behind, bool& written);
   // From the present point to the next one.
   Progress step();
+  Progress turn_back();
   // Rows and records of the critical points in a step; `left`: the path went over to another branch. False: cancelled.
   bool pass(const std::vector<CriticalPoint>& points, bool& left);
   // Onto the branch that crosses at the critical point, to the side asked for.
