@@ -1,6 +1,7 @@
 #include "references/dense.hpp"
 
 #include <Eigen/Dense>
+#include <optional>
 
 namespace catena::testing {
 
@@ -44,61 +45,69 @@ T ReferenceFactors<T>::reciprocal_condition() const {
 
 template <class T>
 struct DenseRows<T>::Qr {
-  Eigen::ColPivHouseholderQR<DenseMatrix<T>> factors;
+  Eigen::Index rows, unknowns;
+  // Absent without rows: Eigen's pivoting reads the norms of columns that an empty matrix does not have.
+  std::optional<Eigen::ColPivHouseholderQR<DenseMatrix<T>>> factors;
 };
 
 template <class T>
 DenseRows<T>::DenseRows(const DenseMatrix<T>& rows, T threshold) {
-  const auto qr = std::make_shared<Qr>();
-  qr->factors.setThreshold(threshold);
-  qr->factors.compute(rows.transpose());
+  const auto qr = std::make_shared<Qr>(Qr{rows.rows(), rows.cols(), std::nullopt});
+  if (rows.size() > 0) qr->factors.emplace().setThreshold(threshold).compute(rows.transpose());
   qr_ = qr;
 }
 
 template <class T>
 Eigen::Index DenseRows<T>::rank() const {
-  return qr_->factors.rank();
+  return qr_->factors ? qr_->factors->rank() : 0;
 }
 
 template <class T>
 T DenseRows<T>::least_pivot() const {
-  return rank() > 0 ? std::abs(qr_->factors.matrixR()(rank() - 1, rank() - 1)) : T(1);
+  return rank() > 0 ? std::abs(qr_->factors->matrixR()(rank() - 1, rank() - 1)) : T(1);
 }
 
 template <class T>
 std::vector<Eigen::Index> DenseRows<T>::independent() const {
-  const auto& order = qr_->factors.colsPermutation().indices();
+  if (!qr_->factors) return {};
+  const auto& order = qr_->factors->colsPermutation().indices();
   return {order.data(), order.data() + rank()};
 }
 
 template <class T>
 DenseMatrix<T> DenseRows<T>::null_space() const {
-  const Eigen::Index n = qr_->factors.rows();
-  const DenseMatrix<T> all = qr_->factors.householderQ() * DenseMatrix<T>::Identity(n, n);
-  return all.rightCols(n - rank());
+  DenseMatrix<T> all = DenseMatrix<T>::Identity(qr_->unknowns, qr_->unknowns);
+  if (qr_->factors) all = qr_->factors->householderQ() * all;
+  return all.rightCols(qr_->unknowns - rank());
 }
 
 template <class T>
 DenseVector<T> DenseRows<T>::multipliers(const DenseVector<T>& sum) const {
-  return qr_->factors.solve(sum);
+  return qr_->factors ? DenseVector<T>(qr_->factors->solve(sum)) : DenseVector<T>::Zero(qr_->rows);
 }
 
 template <class T>
 struct LeastSquares<T>::Orthogonal {
-  Eigen::CompleteOrthogonalDecomposition<DenseMatrix<T>> factors;
+  Eigen::Index unknowns;
+  // Absent for an empty matrix, as in DenseRows.
+  std::optional<Eigen::CompleteOrthogonalDecomposition<DenseMatrix<T>>> factors;
 };
 
 template <class T>
 LeastSquares<T>::LeastSquares(const DenseMatrix<T>& a, T threshold) {
-  const auto orthogonal = std::make_shared<Orthogonal>();
-  if (threshold > 0) orthogonal->factors.setThreshold(threshold);
-  orthogonal->factors.compute(a);
+  const auto orthogonal = std::make_shared<Orthogonal>(Orthogonal{a.cols(), std::nullopt});
+  if (a.size() > 0) {
+    auto& factors = orthogonal->factors.emplace();
+    if (threshold > 0) factors.setThreshold(threshold);
+    factors.compute(a);
+  }
   orthogonal_ = orthogonal;
 }
 
 template <class T>
 DenseVector<T> LeastSquares<T>::solve(const DenseVector<T>& b) const {
-  return orthogonal_->factors.solve(b);
+  return orthogonal_->factors ? DenseVector<T>(orthogonal_->factors->solve(b))
+                              : DenseVector<T>::Zero(orthogonal_->unknowns);
 }
 
 template <class T>
