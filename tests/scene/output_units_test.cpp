@@ -62,23 +62,26 @@ TEST(OutputUnits, SayWhatIsWrong) {
   EXPECT_NE(run.outcome.error_text.find("\"mm\" is not a unit of angle"), std::string::npos) << run.outcome.error_text;
 }
 
+// What was sent last, in the units in which it came.
+class Kept final : public ResultSink, private RowSink {
+ public:
+  void begin_run(const RunHeader&) override {}
+  RowSink& begin_analysis(std::string_view) override { return *this; }
+  void end_analysis(const AnalysisResult& r) override { result = r; }
+  void end_run() override {}
+  void begin(std::span<const ColumnInfo> given) override { columns.assign(given.begin(), given.end()); }
+  bool row(std::span<const double> values) override {
+    last.assign(values.begin(), values.end());
+    return true;
+  }
+  AnalysisResult result;
+  std::vector<ColumnInfo> columns;
+  std::vector<double> last;
+};
+
 // Half a turn a second, shown in degrees; measures and extremes too. The outcome itself stays in SI.
 TEST(OutputUnits, ConvertColumnsMeasuresAndExtremes) {
-  class Kept final : public ResultSink, private RowSink {
-   public:
-    void begin_run(const RunHeader&) override {}
-    RowSink& begin_analysis(std::string_view) override { return *this; }
-    void end_analysis(const AnalysisResult& r) override { result = r; }
-    void end_run() override {}
-    void begin(std::span<const ColumnInfo> given) override { columns.assign(given.begin(), given.end()); }
-    bool row(std::span<const double> values) override {
-      last.assign(values.begin(), values.end());
-      return true;
-    }
-    AnalysisResult result;
-    std::vector<ColumnInfo> columns;
-    std::vector<double> last;
-  } kept;
+  Kept kept;
   UnitsSink shown(kept, {{"time", "ms"}});
   TemporaryFolder folder;
   const std::string path = folder / "scene.json";
@@ -107,6 +110,42 @@ TEST(OutputUnits, ConvertColumnsMeasuresAndExtremes) {
   EXPECT_NEAR(kept.result.extremes[0].largest, 180, 1e-9);
   EXPECT_NEAR(kept.result.extremes[0].largest_t, 1000, 1e-9);
   EXPECT_NEAR(outcome.analyses[0].measures[0].value.value_or(0), std::numbers::pi, 1e-12);
+}
+
+// Angles w t after 2 s of a body that w turns, and x = L cos(w t): derivatives are in deg and mm a unit of the
+// parameter in SI, in columns, extremes and gradients alike.
+TEST(OutputUnits, ConvertDerivativesAsWhatIsDifferentiated) {
+  Kept kept;
+  UnitsSink shown(kept, {});
+  TemporaryFolder folder;
+  const std::string path = folder / "scene.json";
+  std::ofstream(path) << R"({"catena": 1, "units": {"angle": "deg", "length": "mm"},
+    "parameters": {"w": "30 deg/s", "L": 0.5},
+    "bodies": {"b": {"mass": 1, "inertia": 1, "points": {"end": ["L", 0]}}},
+    "constraints": [{"type": "revolute", "i": "ground", "j": "b", "at": [0, 0]}],
+    "drivers": [{"type": "absolute_angle", "name": "turn", "i": "b", "value": {"polynomial": [0, "w"]}}],
+    "outputs": ["b.angle", "b.end.x"],
+    "analyses": [{"type": "sensitivity", "parameters": ["w", "L"], "of": {"type": "kinematics", "until": 2, "every": 1,
+                  "measures": {"turn": {"final": "b.angle"}, "way": {"final": "b.end.x"}}}}]})";
+  const SceneOutcome outcome = run_scene(path, {}, shown);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.error_text;
+  const double degrees = 180 / std::numbers::pi, slope = -0.5 * 2 * std::sin(std::numbers::pi / 3);
+  const auto value = [&](std::string_view name) {
+    const auto at =
+        std::find_if(kept.columns.begin(), kept.columns.end(), [&](const auto& c) { return c.name == name; });
+    return at == kept.columns.end() ? NAN : kept.last[static_cast<std::size_t>(at - kept.columns.begin())];
+  };
+  EXPECT_NEAR(value("d(b.angle)/d(w)"), 2 * degrees, 1e-10);
+  EXPECT_NEAR(value("d(b.end.x)/d(w)"), 1000 * slope, 1e-9);
+  EXPECT_NEAR(value("d(b.end.x)/d(L)"), 1000 * 0.5, 1e-9);
+  ASSERT_EQ(kept.result.measures.size(), 2U);
+  EXPECT_NEAR(kept.result.measures[0].gradient[0], 2 * degrees, 1e-10);
+  EXPECT_NEAR(kept.result.measures[1].gradient[0], 1000 * slope, 1e-9);
+  EXPECT_NEAR(kept.result.measures[1].gradient[1], 1000 * 0.5, 1e-9);
+  const auto extreme = std::find_if(kept.result.extremes.begin(), kept.result.extremes.end(),
+                                    [](const auto& e) { return e.name == "d(b.end.x)/d(L)"; });
+  ASSERT_NE(extreme, kept.result.extremes.end());
+  EXPECT_NEAR(extreme->largest, 1000, 1e-9);
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ struct ColumnInfo {
   UnitKind unit = UnitKind::none;
   std::string own_unit = {};  ///< with UnitKind::own: SI, in the syntax of scenes; empty: not known
   bool is_status = false;     ///< its values number a Status, which is shown by its name
+  /// Of a derivative by a parameter, whose own unit is not known: the SI unit of what is differentiated.
+  std::string differentiated_unit = {};
 
   /// "m/s"; "1" of a pure number, empty where the unit is not known.
   std::string_view unit_text() const;

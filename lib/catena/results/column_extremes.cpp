@@ -10,7 +10,9 @@ void ColumnExtremes::begin(std::span<const ColumnInfo> columns) {
   timed_ = !columns.empty() && columns.front().unit == UnitKind::time;
   is_status_.clear();
   for (const ColumnInfo& column : columns) {
-    all_.push_back({column.name, std::string(column.unit_text())});
+    all_.push_back({.name = column.name,
+                    .unit = std::string(column.unit_text()),
+                    .differentiated_unit = column.differentiated_unit});
     is_status_.push_back(column.is_status);
   }
   target_.begin(columns);

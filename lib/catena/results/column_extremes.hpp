@@ -15,6 +15,7 @@ struct ColumnExtreme {
   double least = 0, largest = 0;
   double least_t = 0, largest_t = 0;  ///< s; the row's number, from 0, where rows have no time
   bool any = false;                   ///< whether there was a value
+  std::string differentiated_unit;    ///< of a derivative, as in ColumnInfo
 };
 
 class ColumnExtremes final : public RowSink {

@@ -75,7 +75,9 @@ void AnalysisRows::begin() {
     for (std::size_t k = 0; k < plain; ++k) {
       if (info_[k].unit == UnitKind::time) continue;
       for (const std::string& parameter : context_.design->names)
-        info_.push_back({fmt::format("d({})/d({})", info_[k].name, parameter), UnitKind::own});
+        info_.push_back({.name = fmt::format("d({})/d({})", info_[k].name, parameter),
+                         .unit = UnitKind::own,
+                         .differentiated_unit = std::string(info_[k].unit_text())});
     }
   }
   values_.resize(info_.size());

@@ -8,6 +8,12 @@ ColumnInfo converted(const ColumnInfo& column, const OutputUnits::Conversion& to
   return {column.name, UnitKind::own, to.unit, column.is_status};
 }
 
+/// A derivative is shown as what is differentiated, by a parameter in SI.
+OutputUnits::Conversion conversion(const OutputUnits& units, std::string_view unit, const std::string& differentiated) {
+  if (differentiated.empty()) return units.of(unit);
+  return {.factor = units.of(differentiated).factor, .unit = std::string(unit)};
+}
+
 }  // namespace
 
 void UnitsSink::begin_run(const RunHeader& header) {
@@ -27,7 +33,7 @@ void UnitsSink::begin(std::span<const ColumnInfo> columns) {
   std::vector<ColumnInfo> shown;
   factor_.clear();
   for (const ColumnInfo& column : columns) {
-    const OutputUnits::Conversion to = units_.of(column.unit_text());
+    const OutputUnits::Conversion to = conversion(units_, column.unit_text(), column.differentiated_unit);
     factor_.push_back(to.factor);
     shown.push_back(converted(column, to));
   }
@@ -44,9 +50,11 @@ void UnitsSink::end_analysis(const AnalysisResult& result) {
   if (!units_.any()) return target_.end_analysis(result);
   AnalysisResult shown = result;
   const double seconds = units_.of("s").factor;
-  for (ColumnInfo& column : shown.columns) column = converted(column, units_.of(column.unit_text()));
+  for (ColumnInfo& column : shown.columns) {
+    column = converted(column, conversion(units_, column.unit_text(), column.differentiated_unit));
+  }
   for (ColumnExtreme& extreme : shown.extremes) {
-    const OutputUnits::Conversion to = units_.of(extreme.unit);
+    const OutputUnits::Conversion to = conversion(units_, extreme.unit, extreme.differentiated_unit);
     extreme.unit = to.unit;
     extreme.least *= to.factor;
     extreme.largest *= to.factor;
