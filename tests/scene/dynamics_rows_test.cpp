@@ -228,6 +228,31 @@ TEST(DynamicsRows, EndAfterTheStepsAllowed) {
   }
 }
 
+// A ball that bounces begins a phase at every impact, one on a spring at every touch; they are integrated apart.
+TEST(DynamicsRows, StepsAllowedAreThoseOfAllPhasesAndMechanisms) {
+  const auto bouncing = [](const std::string& options) {
+    return run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {
+        "b": {"particle": true, "mass": 1, "position": [0, 1]}, "c": {"particle": true, "mass": 1, "position": [1, 3]}},
+      "forces": [{"type": "contact", "i": "ground", "j": "b", "curve": {"line": {"point": [0, 0], "axis": [1, 0]}},
+                  "restitution": 0.8},
+                 {"type": "contact", "i": "ground", "j": "c", "curve": {"line": {"point": [0, 0], "axis": [1, 0]}},
+                  "k": 1e5, "c": 10}],
+      "outputs": ["b.y"], "analyses": [{"type": "dynamics", "until": 3, "every": 0.5)" +
+                    options + "}]}");
+  };
+  for (const std::string options : {"", R"(, "method": "radau")", R"(, "method": "rk8", "step": 0.01)"}) {
+    const TextRun all = bouncing(options);
+    ASSERT_TRUE(all.analysis().report.ok()) << all.analysis().report.message;
+    const auto& counters = all.analysis().report.counters;
+    const std::int64_t steps = counters.steps + counters.rejected;
+    EXPECT_TRUE(bouncing(options + ", \"max_steps\": " + std::to_string(steps)).analysis().report.ok());
+    const TextRun cut = bouncing(options + ", \"max_steps\": " + std::to_string(steps - 10));
+    EXPECT_EQ(cut.analysis().report.status, Status::not_converged) << options;
+    EXPECT_TRUE(says(cut.analysis(), "more than max_steps = " + std::to_string(steps - 10)))
+        << cut.analysis().report.message;
+  }
+}
+
 TEST(DynamicsRows, WarningsHaveUnitsAndReasons) {
   const TextRun run = run_text(R"({"catena": 1, "bodies": {"b": {"mass": 2, "inertia": 1}},
     "constraints": [{"type": "absolute_y", "i": "b", "value": 0}, {"type": "absolute_angle", "i": "b", "value": 0.5}],

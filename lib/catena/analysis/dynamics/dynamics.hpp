@@ -90,6 +90,9 @@ class Dynamics {
   /// Counts work from an earlier start; energy that is missing against then counts as dissipated (an impact).
   void carry_on(WorkSoFar work) { work_.earlier = std::move(work); }
 
+  /// Steps of the next runs are counted, for max_steps, together with those of others, which use the same number.
+  void count_steps_in(std::shared_ptr<std::int64_t> steps) { pace_.of_all = std::move(steps); }
+
   /// The velocities of the next start are those before `event` acts, and may have to jump.
   void expect_jolt(std::string event) { origin_.jolting_event = std::move(event); }
   /// Where velocities jumped in the last run, its start included if that was expected.

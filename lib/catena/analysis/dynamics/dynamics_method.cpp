@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/dynamics/implicit/alpha.hpp"
@@ -169,7 +170,8 @@ Report Dynamics::check_pace(double last) {
   Report report;
   const bool fixed = options_.step > 0;
   const std::int64_t steps = evaluator_.counters.steps + evaluator_.counters.rejected;
-  const bool used_up = steps - pace_.first_step >= options_.max_steps && t_ < last;
+  const std::int64_t taken = *pace_.taken += steps - std::exchange(pace_.counted, steps);
+  const bool used_up = taken >= options_.max_steps && t_ < last;
   bool hopeless = false;
   if (!fixed && steps - pace_.step >= steps_of_a_pace) {
     const double pace = (t_ - pace_.t) / static_cast<double>(steps - pace_.step);
@@ -183,7 +185,7 @@ Report Dynamics::check_pace(double last) {
     report.message = fmt::format(
         "{} steps of {:.3g} s led to t = {:.12g} s, more than max_steps = {} are needed; give a larger step or "
         "max_steps",
-        steps - pace_.first_step, options_.step, t_, options_.max_steps);
+        taken, options_.step, t_, options_.max_steps);
     return report;
   }
   if (std::optional<Report> locked = lock_up_ahead()) return *locked;
@@ -202,7 +204,7 @@ Report Dynamics::check_pace(double last) {
   }
   report.message =
       fmt::format("{} steps led to t = {:.12g} s, {} than max_steps = {} are needed at this pace;{} likely cause: {}",
-                  steps - pace_.first_step, t_, hopeless ? "many more" : "more", options_.max_steps, culprit, cause);
+                  taken, t_, hopeless ? "many more" : "more", options_.max_steps, culprit, cause);
   return report;
 }
 

@@ -90,9 +90,9 @@ class DynamicsOfIslands::Part final : public RowObserver {
     dynamics_.start_from(own);
     start_ = std::move(own);
   }
-  void begin(const TimeGrid& grid, const Needs& needs) {
+  void begin(const TimeGrid& grid, const Needs& needs, const std::shared_ptr<std::int64_t>& steps) {
     ahead_.clear();
-    dynamics_.begin(grid, needs);
+    dynamics_.begin(grid, needs, steps);
   }
   /// Puts row number `row` of the grid among those of all. False: it does not come any more.
   bool go_to(std::int64_t row) {
@@ -290,7 +290,8 @@ AnalysisReport DynamicsOfIslands::run(const TimeGrid& grid, const Needs& needs, 
   const FlushDenormals flush;
   driver_work_.assign(needs.work ? model_->elements.size() : 0, 0.0);
   contacts_.assign(touches_ ? model_->elements.size() : 0, {});
-  for (const auto& part : parts_) part->begin(grid, needs);
+  const auto steps = std::make_shared<std::int64_t>(0);
+  for (const auto& part : parts_) part->begin(grid, needs, steps);
   bool cancelled = false;
   // Of those that cannot go on before a row the one that ends first.
   Part* ended = nullptr;

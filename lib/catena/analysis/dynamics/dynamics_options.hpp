@@ -56,7 +56,7 @@ struct DynamicsOptions {
   /// follow the steps.
   bool may_turn_implicit = true;
   /// Largest number of steps of a run, rejected ones included; the run ends when they are used up, or as soon as ten
-  /// times as many would be needed at its present pace. Ignored for a fixed step.
+  /// times as many would be needed at its present pace. All phases and mechanisms of a motion count together.
   std::int64_t max_steps = 10'000'000;
 };
 

@@ -101,7 +101,9 @@ Report Dynamics::start() {
   }
   look_ahead_at_laws();
   pace_.step = evaluator_.counters.steps + evaluator_.counters.rejected;
-  pace_.first_step = pace_.step - (origin_.resumed ? memory_.steps : 0);
+  pace_.taken = pace_.of_all ? pace_.of_all : std::make_shared<std::int64_t>(0);
+  if (origin_.resumed) *pace_.taken = memory_.steps;
+  pace_.counted = pace_.step;
   pace_.t = t_;
   describe_mobility(run_.report);
   if (work_.balance) {
@@ -301,7 +303,7 @@ void Dynamics::remember() {
   memory_.energy = energy_in_motion();
   memory_.length = under_way_.motion->length_scale();
   memory_.next_row = run_.next_row;
-  memory_.steps = evaluator_.counters.steps + evaluator_.counters.rejected - pace_.first_step;
+  memory_.steps = *pace_.taken;
   memory_.integrator = under_way_.integrator->memory();
   memory_.left_out = equations_.left_out();
   memory_.earlier = work_.earlier;

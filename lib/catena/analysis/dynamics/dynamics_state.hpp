@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -55,9 +56,11 @@ struct DynamicsRun {
 
 /// Counts of steps, rejected ones included, from which the end of a run is foreseen.
 struct StepPace {
-  std::int64_t first_step = 0;  ///< when the run started
-  std::int64_t step = 0;        ///< when the time was ...
-  double t = 0;                 ///< ... this, s
+  std::shared_ptr<std::int64_t> taken;   ///< in the whole run
+  std::shared_ptr<std::int64_t> of_all;  ///< the same, of a run of which this is a part; none: this is all
+  std::int64_t counted = 0;              ///< of this part, those that are among them
+  std::int64_t step = 0;                 ///< when the time was ...
+  double t = 0;                          ///< ... this, s
 };
 
 /// The mechanism at an instant of the last step.

@@ -66,7 +66,8 @@ class DynamicsWithEvents {
   void resume(const MotionMemory& memory);
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
   /// run() in parts, as in Dynamics; rows may come before they are asked for: all of a step that an event ends.
-  void begin(const TimeGrid& grid, const Needs& needs);
+  /// `steps`: see Dynamics::count_steps_in(); nullptr: of this motion alone.
+  void begin(const TimeGrid& grid, const Needs& needs, std::shared_ptr<std::int64_t> steps = nullptr);
   bool go_on(std::int64_t rows, RowObserver& observer);
   AnalysisReport end();
   double time() const { return dynamics_->time(); }
@@ -148,6 +149,7 @@ class DynamicsWithEvents {
     Needs needs;
     AnalysisReport total;
     std::int64_t rows = 0, next_row = 0;  // given, those at events as well; of the grid, where the phase begins
+    std::shared_ptr<std::int64_t> steps;  // in all phases
     bool in_phase = false, over = false;
   } run_;
   PhaseWitness* witness_ = nullptr;

@@ -42,7 +42,8 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
   return end();
 }
 
-void DynamicsWithEvents::begin(const TimeGrid& grid, const Needs& needs) {
+void DynamicsWithEvents::begin(const TimeGrid& grid, const Needs& needs, std::shared_ptr<std::int64_t> steps) {
+  run_.steps = steps ? std::move(steps) : std::make_shared<std::int64_t>(0);
   run_.grid = grid;
   run_.needs = needs;
   run_.rows = rows_before_;
@@ -74,6 +75,7 @@ void DynamicsWithEvents::begin_phase() {
   if (!watch_->events().empty() || contacts_.any()) dynamics_->watch(watch_.get());
   // The next multiple that lies clearly ahead.
   dynamics_->pause_after((std::floor(dynamics_->time() / pauses_.every * (1 + 1e-12)) + 1) * pauses_.every);
+  dynamics_->count_steps_in(run_.steps);
   dynamics_->begin(run_.grid.from_row(run_.next_row), run_.needs);
 }
 
