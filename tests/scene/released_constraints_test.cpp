@@ -44,6 +44,19 @@ TEST(ReleasedConstraints, DoNotHoldInTheNextAnalysis) {
   EXPECT_FALSE(names_pin(run.analysis(8)));
 }
 
+// What is inside another analysis may begin anew.
+TEST(ReleasedConstraints, HoldInsideWhereThatBeginsFromTheScene) {
+  for (const bool anew : {false, true}) {
+    const std::string of = std::string(R"("of": {"type": "equilibrium", )") + (anew ? R"("from": "initial", )" : "") +
+                           R"("measures": {"y": {"final": "p.y"}}})";
+    const TextRun run = run_text(weight(R"({"type": "sweep", "over": {"m": [1, 2]}, )" + of +
+                                        R"(}, {"type": "sensitivity", "parameters": ["m"], )" + of + "}"));
+    for (std::size_t k = 0; k < 3; ++k) ASSERT_TRUE(run.analysis(k).report.ok()) << run.analysis(k).report.message;
+    EXPECT_NEAR(run.last("y", 1), anew ? 0 : -0.2, 1e-12);
+    for (std::size_t k = 1; k < 3; ++k) EXPECT_EQ(names_pin(run.analysis(k)), !anew) << k;
+  }
+}
+
 TEST(ReleasedConstraints, HoldAgainWhereAnEventEngagesThem) {
   // It falls, is carried back to y = 0 by the spring that has become stronger, and caught there.
   const TextRun run =

@@ -124,9 +124,14 @@ SceneSetup::NamedValues SceneRun::changed_parameters(const AnalysisTask& task) {
   return changed;
 }
 
+/// Whether what an analysis does begins with all that the scene has: itself, or the one inside it.
+bool begins_anew(const AnalysisTask& task) {
+  return task.from_initial || std::any_of(task.of.begin(), task.of.end(), begins_anew);
+}
+
 /// What does not hold from the start, since an analysis before has left it so, and no event of this one engages.
 void tell_of_released(const Model& model, const std::vector<int>& released, const AnalysisTask& task, Report& report) {
-  if (released.empty()) return;
+  if (released.empty() || begins_anew(task)) return;
   const std::vector<Event> events = events_of(task, model);
   NameList names;
   for (const int element : released) {
