@@ -242,5 +242,32 @@ TEST(ContactMotion, FrictionGoesOnBeyondTheEndOfASpline) {
   }
 }
 
+// Ever smaller bounces end on the stop at the instant at which the pin begins to stick: both hold the one angle then,
+// at the stop.
+TEST(ContactMotion, ALeverRestsOnItsStopWhereItsPinBeginsToStick) {
+  constexpr double end = 0.05817529584125922;
+  const auto lever = [&](const std::string& options) {
+    return run_text(R"({"catena": 1, "gravity": [1.753264401870085, -6.815149903504329], "bodies": {"b": {
+        "mass": 0.9802184712910531, "inertia": 0.12686552351749872, "position": [-0.31578045896751744,
+        -0.28484590129934995]}},
+      "constraints": [{"type": "revolute", "name": "J", "i": "ground", "j": ["b", [0.31578045896751744,
+        0.28484590129934995]], "c": 0.23717959832676389}],
+      "forces": [{"type": "stop", "name": "rest", "column": "J.angle", "min": -0.5366972978923161, "max": )" +
+                    text_of(end) + R"(, "restitution": 0.8}, {"type": "friction", "name": "rub", "joint": "J",
+        "mu": 0.2718668404889413, "radius": 0.08295947719018418}],
+      "outputs": ["b.angle", "b.omega"], "analyses": [{"type": "dynamics", "until": 1)" +
+                    options + "}]}");
+  };
+  for (const std::string method : {"auto", "rk5", "adams", "radau"}) {
+    for (const std::string tolerance : {"1e-6", "1e-8", "1e-10"}) {
+      SCOPED_TRACE(method + " " + tolerance);
+      const TextRun run = lever(R"(, "method": ")" + method + R"(", "tolerance": )" + tolerance);
+      ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message << run.outcome.error_text;
+      EXPECT_NEAR(run.last("b.angle"), end, 1e-14);
+      EXPECT_NEAR(run.last("b.omega"), 0, 1e-14);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -175,15 +175,53 @@ Report ContactPhases::strike(const Strike& strike, const PlanOptions& options, S
   return decided;
 }
 
+// Whether a place that closes is further from its equation than rounding while friction sticks: a landing is taken at
+// the end of ever smaller bounces.
+bool ContactPhases::misses_closed() const {
+  const Evaluator& evaluator = switch_->evaluator();
+  bool any_sticks = false, misses = false;
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const ContactPoint& point = contacts_.points[k];
+    any_sticks |= sticks(point, states_[k]);
+    if (point.kind != ContactKind::rigid || !states_[k].closed) continue;
+    const double unit = point.turns ? 1 : evaluator.length_scale();
+    misses |= std::abs(evaluator.measure(point.element, {}, {}).value) > thresholds::few_roundings * unit;
+  }
+  return any_sticks && misses;
+}
+
+// Moves the state to where closed places are, so that what sticks does so there: friction of a pin and a stop of its
+// angle hold the same coordinate, and may not ask for two values of it. Where closed places do not fit each other it
+// stays: that is said when the next phase begins.
+void ContactPhases::meet_closed(SystemState& state) const {
+  std::vector<ContactState> closed = states_;
+  for (std::size_t k = 0; k < closed.size(); ++k) {
+    if (sticks(contacts_.points[k], closed[k])) closed[k].direction = 1;
+  }
+  PlanOptions options = options_;
+  add_rows(options, closed);
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(*contacts_.model, options), *contacts_.model, work);
+  evaluator.set_time(state.t);
+  std::vector<double> q = configuration_of(evaluator, state);
+  if (Assembler(evaluator).assemble(q).ok()) state = state_of(evaluator, state.t, q, velocities_of(evaluator, state));
+}
+
 Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cause) {
   Evaluator& evaluator = switch_->evaluator();
-  const std::vector<double> q = configuration_of(evaluator, state);
+  std::vector<double> q = configuration_of(evaluator, state);
   std::vector<double> qd = velocities_of(evaluator, state);
   qd.resize(q.size(), 0.0);
   if (loads_) switch_->know_speed(loads_->speed());
   Report report = switch_->decide(state.t, q, qd, states_, cause);
   for (ContactEvent& event : switch_->take_events()) events_.push_back(event);
   if (!report.ok()) return report;
+  if (misses_closed()) {
+    SystemState met = state_of(evaluator, state.t, q, qd);
+    meet_closed(met);
+    q = configuration_of(evaluator, met);
+    evaluator.set_configuration(q);
+  }
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const int slide = contacts_.points[k].slide;
     if (!sticks(contacts_.points[k], states_[k])) continue;

@@ -91,6 +91,8 @@ class ContactPhases {
   void make_switch(const PlanOptions& options);
   Report renew_switch(const PlanOptions& options, const SystemState& state);
   Report decide(SystemState& state, const ContactSwitch::Cause& cause);
+  bool misses_closed() const;
+  void meet_closed(SystemState& state) const;
   Report check_depth(std::span<const double> q);
   Report change_elastic(const WatchedPlace& watched, SystemState& state);
   Report change_way(std::size_t transition, SystemState& state);
