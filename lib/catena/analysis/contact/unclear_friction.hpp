@@ -10,7 +10,8 @@
 namespace catena {
 
 /// `refused`, naming the friction and the joint, if the reaction of a joint with friction is among the `ambiguous`
-/// elements (minimum_norm.hpp), ascending.
-Report refuse_unclear_friction(const Model& model, std::span<const int> ambiguous);
+/// elements (minimum_norm.hpp), ascending. In a motion places that close or stick at t, s, may share the load of a
+/// joint that no constraint repeats: they are named.
+Report refuse_unclear_friction(const Model& model, std::span<const int> ambiguous, double t);
 
 }  // namespace catena

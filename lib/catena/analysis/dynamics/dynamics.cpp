@@ -18,11 +18,11 @@ namespace catena {
 namespace {
 
 // Where constraints are redundant, at a place that is not singular: the friction of joints needs their reactions.
-Report check_joint_friction(Evaluator& evaluator, std::span<const double> q) {
+Report check_joint_friction(Evaluator& evaluator, std::span<const double> q, double t) {
   if (joints_with_friction(evaluator.model()).empty()) return {};
   evaluator.set_configuration(q);
   MinimumNorm reactions(evaluator);
-  return reactions.factorize() ? refuse_unclear_friction(evaluator.model(), reactions.find_ambiguous()) : Report{};
+  return reactions.factorize() ? refuse_unclear_friction(evaluator.model(), reactions.find_ambiguous(), t) : Report{};
 }
 
 }  // namespace
@@ -99,7 +99,8 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
   }
   redundant_.find(q_, elsewhere ? &*elsewhere : nullptr);
   if (redundant_.count() > 0) {
-    if (Report unclear = check_joint_friction(evaluator_, elsewhere ? elsewhere->q : q_); !unclear.ok()) return unclear;
+    if (Report unclear = check_joint_friction(evaluator_, elsewhere ? elsewhere->q : q_, t_); !unclear.ok())
+      return unclear;
     evaluator_.set_configuration(q_);
   }
   if (Report massless = equations_.check_massless(q_); !massless.ok()) return massless;
