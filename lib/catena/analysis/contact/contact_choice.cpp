@@ -29,14 +29,22 @@ bool ContactSwitch::find_free_accelerations(double t, std::span<const double> q,
   return found;
 }
 
-// What presses a joint depends on the forces themselves: both are found in turns.
+// What presses a joint depends on the forces themselves: both are found in turns, from the forces that the problem has.
 Report ContactSwitch::press_joints(double t, std::span<const double> qd, const ContactLoads& loads,
                                    ContactProblem& problem) {
   const std::span<const double> free = equations_.multipliers();
   // The multipliers, and the sizes of the terms that they are sums of, for their rounding.
-  std::vector<double> lambda(free.begin(), free.end()), terms(free.size());
-  for (std::size_t r = 0; r < free.size(); ++r) terms[r] = std::abs(free[r]);
+  std::vector<double> lambda(free.size()), terms(free.size());
   for (int round = 0; round < most_rounds; ++round) {
+    for (std::size_t r = 0; r < lambda.size(); ++r) {
+      lambda[r] = free[r];
+      terms[r] = std::abs(free[r]);
+      for (std::size_t c = 0; c < problem.x.size(); ++c) {
+        const double part = multipliers_[c][r] * problem.x[c];
+        lambda[r] += part;
+        terms[r] += std::abs(part);
+      }
+    }
     double change = 0, size = 0;
     for (std::size_t a = 0; a < active_.size(); ++a) {
       ContactProblem::Place& place = problem.place[a];
@@ -50,15 +58,6 @@ Report ContactSwitch::press_joints(double t, std::span<const double> qd, const C
     }
     if (!problem.solve()) return wedged(t);
     if (change <= thresholds::sum_rounding * size) return {};
-    for (std::size_t r = 0; r < lambda.size(); ++r) {
-      lambda[r] = free[r];
-      terms[r] = std::abs(free[r]);
-      for (std::size_t c = 0; c < problem.x.size(); ++c) {
-        const double part = multipliers_[c][r] * problem.x[c];
-        lambda[r] += part;
-        terms[r] += std::abs(part);
-      }
-    }
   }
   return failure(t, fmt::format("the friction of {} and the reactions that press there do not settle within {} rounds",
                                 names_of(*model_, points_, active_), most_rounds));
@@ -197,6 +196,7 @@ Report ContactSwitch::choose_among(double t, std::span<const double> qd, std::ve
   if (Report pressed = press_joints(t, qd, loads, problem); !pressed.ok())
     return is_jammed(true) ? blocked(t, active_) : pressed;
   if (!cause.shares) stick_where_possible(problem);
+  if (!cause.shares) stick_where_pressed(t, qd, loads, problem);
   if (const std::vector<std::size_t> pushed = pushed_through(t, problem, cause); !pushed.empty())
     return blocked(t, pushed);
   if (!cause.shares) note_other_states(t, problem);

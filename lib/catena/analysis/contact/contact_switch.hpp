@@ -33,6 +33,7 @@
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/contact/motion_phase.hpp"
 #include "catena/analysis/contact/problem/contact_problem.hpp"
+#include "catena/analysis/contact/several_states.hpp"
 #include "catena/analysis/contact/shared_forces.hpp"
 #include "catena/analysis/events/motion_sizes.hpp"
 #include "catena/analysis/events/strike.hpp"
@@ -167,7 +168,9 @@ class ContactSwitch {
                 const Cause& cause);
   Report choose_among(double t, std::span<const double> qd, std::vector<ContactState>& states, const Cause& cause,
                       const ContactLoads& loads);
+  void stick_where_pressed(double t, std::span<const double> qd, const ContactLoads& loads, ContactProblem& problem);
   void note_other_states(double t, const ContactProblem& problem);
+  void note_states(double t, const ContactProblem& taken, const StatesOfFriction& other);
   std::string describe(const std::vector<ContactProblem::State>& states, const std::vector<int>& directions) const;
   void let_leave(double t, std::vector<ContactState>& states, const Cause& cause);
   void set_up(ContactProblem& problem, const Cause& cause) const;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "catena/analysis/contact/contact_switch.hpp"
 #include "catena/analysis/run/thresholds.hpp"
@@ -168,11 +170,35 @@ std::string ContactSwitch::describe(const std::vector<ContactProblem::State>& st
 }
 
 void ContactSwitch::note_other_states(double t, const ContactProblem& problem) {
-  const std::optional<StatesOfFriction> other = other_states(problem);
-  if (!other || several_states_.times++ > 0) return;
+  if (const std::optional<StatesOfFriction> other = other_states(problem)) note_states(t, problem, *other);
+}
+
+void ContactSwitch::note_states(double t, const ContactProblem& taken, const StatesOfFriction& other) {
+  if (several_states_.times++ > 0) return;
   several_states_.first = t;
-  several_states_.states = fmt::format("{}; as well: {}", describe(problem.state, problem.direction),
-                                       describe(other->state, other->direction));
+  several_states_.states =
+      fmt::format("{}; as well: {}", describe(taken.state, taken.direction), describe(other.state, other.direction));
+}
+
+// Joints at rest that slide although the friction which holds them presses them enough for it: found from the forces
+// with which all of them stick.
+void ContactSwitch::stick_where_pressed(double t, std::span<const double> qd, const ContactLoads& loads,
+                                        ContactProblem& problem) {
+  ContactProblem held = problem;
+  bool any = false;
+  for (std::size_t a = 0; a < held.place.size(); ++a) {
+    ContactProblem::Place& place = held.place[a];
+    if (place.has_normal || place.head >= 0 || place.slip != 0 || problem.state[a] != State::slides) continue;
+    place.limit = std::numeric_limits<double>::infinity();
+    any = true;
+  }
+  if (!any || !held.solve() || !press_joints(t, qd, loads, held).ok()) return;
+  const auto sticking = [](const ContactProblem& p) {
+    return std::count(p.state.begin(), p.state.end(), State::sticks);
+  };
+  if (sticking(held) <= sticking(problem)) return;
+  note_states(t, held, {problem.state, problem.direction});
+  problem = std::move(held);
 }
 
 }  // namespace catena

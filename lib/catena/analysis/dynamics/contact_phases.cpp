@@ -281,8 +281,9 @@ std::string ContactPhases::remark_on_states() const {
   if (!switch_ || switch_->several_states().times == 0) return {};
   const ContactSwitch::SeveralStates& several = switch_->several_states();
   return fmt::format(
-      "at t = {:.9g} s{} friction leaves open what moves, as it is larger at rest (mu_static) than in motion (mu); "
-      "taken: {}. Both meet all equations; give equal coefficients, or let the load grow from where all is at rest",
+      "at t = {:.9g} s{} friction leaves open what moves, as it is larger at rest (mu_static) than in motion (mu), or "
+      "presses its own joint; taken: {}. Both meet all equations; give equal coefficients, less friction, or let the "
+      "load grow from where all is at rest",
       several.first, several.times > 1 ? fmt::format(" and {} times later", several.times - 1) : "", several.states);
 }
 

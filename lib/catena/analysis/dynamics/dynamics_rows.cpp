@@ -146,6 +146,8 @@ Report Dynamics::stuck() {
   Report report;
   // Steps that end beyond the place where a law ceases to have a value fail, however short they are.
   const int lost = evaluator_.law_without_value();
+  // So do those that end where friction has no force that fits.
+  const std::string trouble = attached_.contacts ? attached_.contacts->trouble() : std::string();
   if (std::optional<Report> locked = lock_up_ahead()) return *locked;
   // An element that is undefined in kinematics is undefined here as well.
   evaluator_.set_time(under_way_.integrator->time());
@@ -158,6 +160,11 @@ Report Dynamics::stuck() {
     report.status = Status::singular;
     report.message = fmt::format("{} is undefined beyond t = {:.9g} s: its expression has no finite value there",
                                  describe_law(*model_, lost), under_way_.integrator->time());
+    return report;
+  }
+  if (!trouble.empty()) {
+    report.status = Status::inconsistent;
+    report.message = fmt::format("at t = {:.12g} s: {}", under_way_.integrator->time(), trouble);
     return report;
   }
   report.status = Status::step_too_small;
