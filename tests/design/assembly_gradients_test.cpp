@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/sanitized.hpp"
 #include "design/measured.hpp"
 #include "oracles/random_seeds.hpp"
 #include "oracles/scene_text.hpp"
@@ -176,11 +177,11 @@ std::string fault_of(const FarMechanism& mechanism) {
 
 TEST(FarAssemblyGradients, OfRandomMechanismsAreThoseOfWholeRuns) {
   far_compared = 0;
-  expect_no_fault(1, 20, [](unsigned seed) {
+  expect_no_fault(1, size_of_test(20u, 5u), [](unsigned seed) {
     RandomNumbers random(seed);
     return fault_of(FarMechanism(random));
   });
-  EXPECT_GT(far_compared, 200);
+  EXPECT_GT(far_compared, size_of_test(200, 50));
 }
 
 // A cam on a cam has no points whose distance from the centroid says how turning compares with moving: its own size

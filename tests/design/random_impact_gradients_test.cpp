@@ -223,7 +223,7 @@ void expect_gradients(unsigned first, unsigned last, Make&& make) {
   EXPECT_GT(2 * gone_back, static_cast<int>(last - first + 1));
 }
 
-TEST(RandomImpactGradients, OfChainsThatHitStops) { expect_gradients(1, size_of_test(8u, 2u), chain_with_stops); }
+TEST(RandomImpactGradients, OfChainsThatHitStops) { expect_gradients(1, size_of_test(8u, 1u), chain_with_stops); }
 TEST(RandomImpactGradients, OfDiscsThatAreThrown) { expect_gradients(1, size_of_test(4u, 1u), thrown_disc); }
 TEST(RandomImpactGradients, OfSlidersThatRub) { expect_gradients(1, size_of_test(4u, 1u), slider_with_catch); }
 

@@ -3,13 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/sanitized.hpp"
+
 namespace catena::testing {
 namespace {
 
 TEST(ElasticChains, RandomOnesAgreeWithBisection) {
   std::mt19937 random(7);
   int refused = 0;
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < size_of_test(60, 15); ++k) {
     const ElasticChain chain = random_elastic_chain(random, 80);
     const ElasticChainVerdict verdict = judge_elastic_chain(chain);
     if (!verdict.taut) continue;

@@ -42,7 +42,7 @@ std::string fault_of(unsigned seed, bool held) {
 }
 
 TEST(EndlessLines, OfCarriagesThatNothingHolds) {
-  expect_no_fault(1, size_of_test(40u, 6u), [](unsigned seed) { return fault_of(seed, false); });
+  expect_no_fault(1, size_of_test(40u, 2u), [](unsigned seed) { return fault_of(seed, false); });
 }
 
 // A body that slides off its curve is held by nothing there: equilibrium and motion name the same cause.

@@ -97,7 +97,7 @@ TEST(EventsAtRest, SinesOfAPlaceThatMovesEvenly) {
 // A block that sticks on a rough floor slips as soon as the force exceeds what friction can hold, to either side.
 TEST(EventsAtRest, BlocksThatStick) {
   int judged = 0;
-  expect_no_fault(1, size_of_test(40u, 12u), [&](unsigned seed) -> std::string {
+  expect_no_fault(1, size_of_test(40u, 5u), [&](unsigned seed) -> std::string {
     const Load load(seed);
     const double held = std::abs(load.value);
     const std::vector<double> up = passages(load.amplitude, load.omega, load.phase, held, load.end),

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "analysis/sanitized.hpp"
 #include "oracles/analysis_fields.hpp"
 #include "oracles/scene_text.hpp"
 #include "references/dense.hpp"
@@ -278,7 +279,7 @@ void expect_path(const Chain& chain, const TextRun& run, std::size_t analysis, i
 
 TEST(OneSidedStability, PathsOfChainsWithStopsAgainstDenseAlgebra) {
   int changes = 0;
-  for (unsigned seed = 1; seed <= 60; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(60u, 16u); ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers draw(seed + 100);
     const Chain chain = Chain::random(draw, 1 + static_cast<int>(seed % 4));
@@ -288,7 +289,7 @@ TEST(OneSidedStability, PathsOfChainsWithStopsAgainstDenseAlgebra) {
     expect_path(chain, run, 0, changes);
     expect_path(chain, run, 1, changes);
   }
-  EXPECT_GE(changes, 50);
+  EXPECT_GE(changes, size_of_test(50, 10));
 }
 
 }  // namespace

@@ -121,13 +121,13 @@ bool counts(unsigned seed, std::string& fault) {
 
 TEST(PathsPastCables, GoToTheirEnd) {
   int counted = 0;
-  const unsigned last = is_sanitized ? 20 : 120;
+  const unsigned last = size_of_test(120u, 10u);
   for (unsigned seed = 1; seed <= last; ++seed) {
     std::string fault;
     counted += counts(seed, fault);
     EXPECT_EQ(fault, "") << seed;
   }
-  EXPECT_GE(counted, is_sanitized ? 5 : 40);
+  EXPECT_GE(counted, size_of_test(40, 2));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "analysis/sanitized.hpp"
 #include "scene/event_entries.hpp"
 
 namespace catena::testing {
@@ -116,7 +117,7 @@ void expect_lock_up(const Locking& locking, const std::string& beside, const std
 
 // 3 seeds of ten mechanisms.
 TEST(LockUpKinds, InEveryAnalysisAndMethod) {
-  for (unsigned seed = 1; seed <= 3; ++seed) {
+  for (unsigned seed = 1; seed <= size_of_test(3u, 1u); ++seed) {
     std::mt19937 random(seed);
     const std::vector<Locking> all = lockings(random);
     const double t = std::uniform_real_distribution<double>(0.2, 2)(random);

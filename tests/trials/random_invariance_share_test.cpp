@@ -3,6 +3,7 @@
 // motions by a length scale of 1 m and by rows in metres compared with rows in radians. And those that were refused a
 // million sizes from the origin: partitioning and equilibria took the rounding of curves on the ground, and of
 // equations without freedom there, for equations that are not met.
+#include "analysis/sanitized.hpp"
 #include "oracles/random_seeds.hpp"
 #include "stress/random_analyses.hpp"
 #include "stress/touching_scene.hpp"
@@ -33,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, FarOrigin, ::testing::Values(600025u, 600035u, 6
 
 TEST(OtherUnitsOfAnalyses, DoNotMatter) {
   std::map<std::string, int> seen;
-  expect_no_fault(1, 30, [&](unsigned seed) { return fault_of_units(seed, seen); });
+  expect_no_fault(1, size_of_test(30u, 8u), [&](unsigned seed) { return fault_of_units(seed, seen); });
   // A dead point of a mechanism of nanometres, taken for a bifurcation.
   EXPECT_EQ(fault_of_units(600033, seen), "");
   // Velocities at the start, whose changes in m/s and in rad/s were compared with each other.
@@ -49,16 +50,17 @@ TEST(OtherUnitsOfAnalyses, LoadsWithoutAnEffectBuckleNothing) {
 
 TEST(OtherUnitsOfWinding, DoNotMatter) {
   std::map<std::string, int> seen;
-  expect_no_fault(1, 32, [&](unsigned seed) { return fault_of_winding_in_other_units(seed, seen); });
-  expect_no_fault(1, 32, [&](unsigned seed) { return fault_of_winding_elsewhere(seed, seen); });
-  EXPECT_GE(seen["ok"], 62);
+  expect_no_fault(1, size_of_test(32u, 8u), [&](unsigned seed) { return fault_of_winding_in_other_units(seed, seen); });
+  expect_no_fault(1, size_of_test(32u, 8u), [&](unsigned seed) { return fault_of_winding_elsewhere(seed, seen); });
+  EXPECT_GE(seen["ok"], size_of_test(62, 14));
 }
 
 // Places where bodies touch, and events, once had lengths, speeds and forces of their own: 1e-14 m, 1e-14 m/s, 1e-14 N.
 TEST(OtherUnitsOfContacts, DoNotMatter) {
   std::map<std::string, int> seen;
-  expect_no_fault(1, 48, [&](unsigned seed) { return fault_of_units_where_bodies_touch(seed, seen); });
-  EXPECT_GE(seen["ok"], 47);
+  expect_no_fault(1, size_of_test(48u, 12u),
+                  [&](unsigned seed) { return fault_of_units_where_bodies_touch(seed, seen); });
+  EXPECT_GE(seen["ok"], size_of_test(47, 11));
 }
 
 // A particle falls h, comes back with e of its speed, and is on its second flight when it is looked at.
