@@ -101,6 +101,7 @@ SystemState DynamicsWithEvents::state() const {
   state.ropes = contacts_.turns(state);
   // After what events did last, too, and no rows of contacts that are open.
   state.released = released_by_events(*given_model_, plan_options_.released_elements);
+  state.held = held_by_events(watch_->events(), plan_options_.released_elements);
   // Slides of contacts are none of the given model's.
   std::erase_if(state.curves,
                 [this](const CurvePlace& place) { return at(place.element) >= given_model_->elements.size(); });

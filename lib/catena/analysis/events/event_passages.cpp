@@ -35,17 +35,21 @@ double EventWatch::value_at(std::size_t k, double t, const StateAt& state_at) {
 }
 
 // The root between an instant on the old side and one on the new side: the secant through the ends, the older end's
-// value halved when it stays (Illinois), bisection where that is slow.
-double EventWatch::locate(std::size_t k, double before, double after, const StateAt& state_at) {
+// value halved when it stays (Illinois), bisection where that is slow. Nothing where no instant on the old side is
+// found.
+std::optional<double> EventWatch::locate(std::size_t k, double before, double after, const StateAt& state_at) {
   double a = before, b = after, fa = value_at(k, a, state_at), fb = value_at(k, b, state_at);
-  // After an event at the start itself the column may have gone beyond and be on its way back.
-  for (double part = 0.5; !(fa * side_[k] > 0); part /= 2) {
+  const int old = side_[k].at;
+  // After an event at the start itself the column may have gone beyond and be on its way back. Where it stays at its
+  // value rounding decides on the sign.
+  const auto is_there = [&](double f) { return side_[k].is_expected ? side(k, f) == old : f * old > 0; };
+  for (double part = 0.5; !is_there(fa); part /= 2) {
     // Nearer to the first sample nothing is looked for.
-    if (part < shortest_step) return before;
+    if (part < shortest_step) return {};
     a = before + (after - before) * part;
     fa = watched(k, a, state_at);
   }
-  if (!(fb * side_[k] < 0)) return b;
+  if (!(fb * old < 0)) return b;
   double width = b - a;
   for (int n = 0; n < thresholds::most_bisections; ++n) {
     if (b - a <= 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), std::abs(b))) break;
@@ -54,7 +58,7 @@ double EventWatch::locate(std::size_t k, double before, double after, const Stat
     if (n % 3 == 2) width = b - a;
     const double f = watched(k, t, state_at);
     if (f == 0) return t;
-    if (f * side_[k] > 0) {
+    if (f * old > 0) {
       a = t;
       fa = f;
       fb /= 2;
@@ -69,7 +73,8 @@ double EventWatch::locate(std::size_t k, double before, double after, const Stat
 
 // An instant up to the last sample at which column k is beyond its value, or nothing. `three`: there are three samples.
 std::optional<double> EventWatch::passage(std::size_t k, bool three, const StateAt& state_at) {
-  if (side(k, g_[2][k]) == -side_[k]) return times_[2];
+  const int old = side_[k].at;
+  if (side(k, g_[2][k]) == -old) return times_[2];
   if (!three) return {};
   // A dip: the parabola through three samples has its vertex among them and reaches the value there, or nearly so. The
   // vertex may lie in the first or the last part of a step, beyond the nearest sample.
@@ -77,9 +82,9 @@ std::optional<double> EventWatch::passage(std::size_t k, bool three, const State
   for (int n = 0; n < 8; ++n) {
     const Vertex low = vertex(ts, gs);
     const double nearest = std::min({std::abs(gs[0]), std::abs(gs[1]), std::abs(gs[2])});
-    if (!low.inside || low.value * side_[k] > 0.1 * nearest || low.t == ts[1]) return {};
+    if (!low.inside || low.value * old > 0.1 * nearest || low.t == ts[1]) return {};
     const double g = watched(k, low.t, state_at);
-    if (side(k, g) == -side_[k]) return low.t;
+    if (side(k, g) == -old) return low.t;
     const bool first = low.t < ts[1], nearer = std::abs(g) < std::abs(gs[1]);
     // The three points nearest to the lowest one.
     if (nearer) {
@@ -100,16 +105,15 @@ std::optional<double> EventWatch::passage(std::size_t k, bool three, const State
 std::vector<EventWatch::Enclosed> EventWatch::enclose_passages(bool three, const StateAt& state_at) {
   std::vector<Enclosed> enclosed;
   for (std::size_t k = 0; k < side_.size(); ++k) {
-    if (side_[k] == 0) {
-      side_[k] = side(k, g_[2][k]);
-      continue;
-    }
+    const int now = side(k, g_[2][k]);
+    if (side_[k].at == 0 || now == side_[k].at) side_[k] = {now};
+    if (side_[k].at == 0) continue;
     const std::optional<double> beyond = passage(k, three, state_at);
     if (!beyond) continue;
     Enclosed passage{k, *beyond > times_[1] ? times_[1] : times_[0], *beyond, *beyond != times_[2]};
     if (!counts(k)) {
       // A passage in a direction that is not watched; the return from a dip is watched.
-      side_[k] = -side_[k];
+      side_[k] = {-side_[k].at};
       if (!passage.dips) continue;
       passage.before = passage.after;
       passage.after = times_[2];
@@ -141,13 +145,15 @@ bool EventWatch::locate_passages(const std::vector<Enclosed>& enclosed, const St
         sampled = true;
       }
       const int then = side(k, then_[k]);
-      if (then == side_[k]) continue;
-      if (then == -side_[k]) after = first;
+      if (then == side_[k].at) continue;
+      if (then == -side_[k].at) after = first;
     }
-    const double t = locate(k, passage.before, after, state_at);
-    if (t <= found_at_[k]) {
-      // The event that was found there already, seen again within rounding.
-      side_[k] = -side_[k];
+    const std::optional<double> located = locate(k, passage.before, after, state_at);
+    const double t = located.value_or(passage.before);
+    // The event that was found there already, seen again within rounding; or the column left its value to where it came
+    // from.
+    if (t <= found_at_[k] || (!located && side_[k].is_expected)) {
+      side_[k] = {-side_[k].at};
       continue;
     }
     found_.push_back({static_cast<int>(k), t});

@@ -75,6 +75,7 @@ std::optional<FoundEvent> EventWatch::first_in_samples(double from, double to, i
     std::rotate(times_.begin(), times_.begin() + 1, times_.end());
     times_[2] = EventSamples::instant(from, to, n);
     std::copy(taken_.at(n).begin(), taken_.at(n).end(), g_[2].begin());
+    side_before_ = side_;
     const bool dips = locate_passages(enclose_passages(n >= 2, state_at), state_at);
     if (found_.empty()) continue;
     std::sort(found_.begin(), found_.end(),
@@ -104,7 +105,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
   // A transition knows the side on which it begins, whatever rounding says at once.
   for (std::size_t k = 0; count > 0 && k < events_.size(); ++k) {
     const int now = side(k, g_[2][k]);
-    if (now != 0) side_[k] = now;
+    if (now != 0) side_[k] = {now};
   }
   taken_.begin(side_.size());
   Look look{state_at};

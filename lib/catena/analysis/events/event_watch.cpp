@@ -35,7 +35,7 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
     if (event.action == EventAction::release || event.action == EventAction::engage)
       static_cast<void>(model.element_type(event.element));  // throws for what is none
   }
-  side_.assign(events_.size(), 0);
+  side_.assign(events_.size(), {});
   largest_.assign(events_.size(), 0);
   // What authors compute has no size that is known.
   for (std::size_t k = 0; k < events_.size(); ++k) {
@@ -63,8 +63,9 @@ int EventWatch::side(std::size_t k, double g) const {
 
 /// Whether a passage from the side last seen to the other one is in the direction that is watched.
 bool EventWatch::counts(std::size_t k) const {
-  if (k >= events_.size()) return side_[k] == transitions_[k - events_.size()].side;
-  return events_[k].direction == EventDirection::any || (events_[k].direction == EventDirection::up) == (side_[k] < 0);
+  if (k >= events_.size()) return side_[k].at == transitions_[k - events_.size()].side;
+  return events_[k].direction == EventDirection::any ||
+         (events_[k].direction == EventDirection::up) == (side_[k].at < 0);
 }
 
 void EventWatch::sample(const Snapshot& state, std::span<double> g) {
@@ -88,7 +89,7 @@ void EventWatch::watch(std::vector<Transition> transitions, const Needs& needs) 
   transition_needs_ = needs;
   const std::size_t size = events_.size() + transitions_.size();
   side_.resize(events_.size());
-  for (const Transition& transition : transitions_) side_.push_back(transition.side);
+  for (const Transition& transition : transitions_) side_.push_back({transition.side});
   largest_.resize(events_.size());
   for (const Transition& transition : transitions_) largest_.push_back(transition.scale);
   found_at_.resize(events_.size());
@@ -136,16 +137,34 @@ FoundEvent EventWatch::first_found(const StateAt& state_at) {
     first = simultaneous_.back();
     simultaneous_.pop_back();
   }
+  bool changes = acts(first.event);
+  for (const FoundEvent& found : simultaneous_) changes = changes || acts(found.event);
   const auto take_note = [&](const FoundEvent& found) {
-    int& last_seen = side_[static_cast<std::size_t>(found.event)];
-    last_seen = -last_seen;
-    found_at_[static_cast<std::size_t>(found.event)] = found.t;
+    const auto k = static_cast<std::size_t>(found.event);
+    side_before_[k] = side_[k] = {-side_[k].at, true};
+    found_at_[k] = found.t;
   };
   take_note(first);
   std::for_each(simultaneous_.begin(), simultaneous_.end(), take_note);
+  // The motion does not come to the last sample.
+  if (changes) side_ = side_before_;
   // The last one tells up to where they were given.
   if (!found_.empty()) found_.push_back(first);
   return first;
+}
+
+/// As numbers: twice the side where it is expected.
+std::vector<int> EventWatch::sides() const {
+  std::vector<int> numbers;
+  for (std::size_t k = 0; k < events_.size(); ++k) numbers.push_back(side_[k].at * (side_[k].is_expected ? 2 : 1));
+  return numbers;
+}
+
+void EventWatch::remember(const EventMemory& memory) {
+  side_.clear();
+  for (const int number : memory.sides) side_.push_back({(number > 0) - (number < 0), std::abs(number) == 2});
+  largest_ = memory.largest;
+  records_ = memory.records;
 }
 
 bool EventWatch::take(const FoundEvent& found) {

@@ -6,8 +6,9 @@
 // of the fastest body's turn apart, and where the samples of a column do not foretell each other (event_samples.hpp) in
 // halves. A change of sign, or a dip towards zero that a parabola through three samples takes beyond it, is enclosed
 // and the root found to rounding in t on states that meet the constraints, hence as exact as the rows of the run. A
-// column that starts at its value has no event there. A column that crosses its value twice between two samples without
-// a visible dip is missed; so may be one that no halving foretells.
+// column that starts at its value has no event there, nor has one that stays at its value after an event and leaves it
+// to the side from which it came, as where a latch that the event closed is opened. A column that crosses its value
+// twice between two samples without a visible dip is missed; so may be one that no halving foretells.
 //
 // Events of the list are simultaneous if the later ones' columns are at their values, to rounding, when the first one
 // happens: they then have its instant, and come in the order of the list. Units: those of the columns, s.
@@ -45,8 +46,9 @@ struct Event {
   double value = 0;
   EventDirection direction = EventDirection::any;
   EventAction action = EventAction::record;
-  int element = -1;  ///< what is released or engaged, in the model's list
-  Strike strike{};   ///< the impulse
+  int element = -1;      ///< what is released or engaged, in the model's list
+  bool is_held = false;  ///< that holds from the start, as a motion before has left it
+  Strike strike{};       ///< the impulse
 };
 
 /// A change of the mechanism itself: where `value` passes from the side on which it begins to the other one.
@@ -101,15 +103,18 @@ class EventWatch {
   /// Its state, without `released` and `turned`; and takes over the state of another one.
   EventMemory memory() const {
     const auto events = static_cast<std::ptrdiff_t>(events_.size());
-    return {{}, {}, {side_.begin(), side_.begin() + events}, {largest_.begin(), largest_.begin() + events}, records_};
+    return {{}, {}, sides(), {largest_.begin(), largest_.begin() + events}, records_};
   }
-  void remember(const EventMemory& memory) {
-    side_ = memory.sides;
-    largest_ = memory.largest;
-    records_ = memory.records;
-  }
+  void remember(const EventMemory& memory);
 
  private:
+  /// Of its value on which a column is: -1, 1; 0: not yet seen.
+  struct Side {
+    int at = 0;
+    bool is_expected = false;  ///< an event led there, and the column has not been seen there since
+  };
+
+  std::vector<int> sides() const;
   FoundEvent first_found(const StateAt& state_at);
   int stretches(double from, double to, const StateAt& state_at);
   struct Look;
@@ -119,7 +124,7 @@ class EventWatch {
   void sample(const Snapshot& state, std::span<double> g);
   double watched(std::size_t k, double t, const StateAt& state_at);
   std::optional<double> passage(std::size_t k, bool three, const StateAt& state_at);
-  double locate(std::size_t k, double before, double after, const StateAt& state_at);
+  std::optional<double> locate(std::size_t k, double before, double after, const StateAt& state_at);
   double value_at(std::size_t k, double t, const StateAt& state_at);
   /// Column k passes its value between two instants; `dips`: not for long.
   struct Enclosed {
@@ -141,7 +146,8 @@ class EventWatch {
   std::vector<Transition> transitions_;
   Needs transition_needs_;
   Needs needs_;
-  std::vector<int> side_;                 // of its value on which each column was last seen: -1, 1; 0: not yet
+  std::vector<Side> side_;
+  std::vector<Side> side_before_;         // at the sample before the last
   std::vector<double> largest_;           // |column| so far: what rounding is measured against
   std::vector<double> found_at_;          // when each event was last found, s
   std::array<std::vector<double>, 3> g_;  // the last samples, of all columns

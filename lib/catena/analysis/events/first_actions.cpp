@@ -14,7 +14,7 @@ FirstActions first_actions(std::span<const Event> events, const Model& model) {
     const bool is_first =
         std::find(first.acted_on.begin(), first.acted_on.end(), event.element) == first.acted_on.end();
     first.acted_on.push_back(event.element);
-    if (event.action != EventAction::engage || !is_first) continue;
+    if (event.action != EventAction::engage || !is_first || event.is_held) continue;
     first.released.push_back(event.element);
     const auto releases = std::find_if(events.begin(), events.end(), [&](const Event& other) {
       return other.action == EventAction::release && other.element == event.element;
@@ -26,6 +26,17 @@ FirstActions first_actions(std::span<const Event> events, const Model& model) {
         model.element_name(event.element), event.name, releases->name, releases->name));
   }
   return first;
+}
+
+std::vector<int> held_by_events(std::span<const Event> events, const std::vector<int>& released) {
+  std::vector<int> held;
+  for (const Event& event : events) {
+    if (event.action != EventAction::release && event.action != EventAction::engage) continue;
+    if (std::find(released.begin(), released.end(), event.element) == released.end()) held.push_back(event.element);
+  }
+  std::sort(held.begin(), held.end());
+  held.erase(std::unique(held.begin(), held.end()), held.end());
+  return held;
 }
 
 }  // namespace catena

@@ -2,7 +2,9 @@
 //
 // An element that events only release holds until then, one that they only engage does not before. Of one that they do
 // both to, the first of these events in the list tells: a lock that is opened and closes again holds from the start, a
-// clutch that closes and is opened later does not. When an event happens is not known before the motion is.
+// clutch that closes and is opened later does not. When an event happens is not known before the motion is. A motion
+// that goes on where another one with such events ended begins with what that has left: a motion cut in two is the
+// whole one.
 #pragma once
 
 #include <span>
@@ -21,5 +23,8 @@ struct FirstActions {
 };
 
 FirstActions first_actions(std::span<const Event> events, const Model& model);
+
+/// Of the elements that events release and engage those that hold, where these are released; ascending.
+std::vector<int> held_by_events(std::span<const Event> events, const std::vector<int>& released);
 
 }  // namespace catena

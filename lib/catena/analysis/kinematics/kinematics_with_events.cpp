@@ -259,6 +259,7 @@ Report KinematicsWithEvents::engage(std::span<const int> elements) {
 SystemState KinematicsWithEvents::state() const {
   SystemState state = end_ ? *end_ : kinematics_->state();
   state.released = released_by_events(*given_model_, plan_options_.released_elements);
+  state.held = held_by_events(watch_->events(), plan_options_.released_elements);
   return state;
 }
 

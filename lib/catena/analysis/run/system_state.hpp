@@ -23,6 +23,9 @@ struct SystemState {
   std::vector<CurvePlace> curves{};
   /// Constraints and drivers that do not hold, ascending: an event released them, or has not engaged them yet.
   std::vector<int> released{};
+  /// Those that hold where an event released or engaged them, ascending: they do so in a motion that goes on from here,
+  /// whatever its events begin with.
+  std::vector<int> held{};
 };
 
 }  // namespace catena

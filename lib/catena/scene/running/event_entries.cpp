@@ -27,7 +27,7 @@ std::string_view kind_of(const EventRequest& event) {
 
 }  // namespace
 
-std::vector<Event> events_of(const AnalysisTask& task, const Model& model) {
+std::vector<Event> events_of(const AnalysisTask& task, const Model& model, const std::vector<int>& held) {
   // In the order of the keys' words.
   constexpr EventDirection directions[] = {EventDirection::any, EventDirection::up, EventDirection::down};
   constexpr EventAction actions[] = {EventAction::record, EventAction::stop, EventAction::release, EventAction::engage};
@@ -36,6 +36,7 @@ std::vector<Event> events_of(const AnalysisTask& task, const Model& model) {
     events.push_back({request.name, request.column, request.value, directions[request.direction],
                       actions[request.action], request.element.empty() ? -1 : model.find_element(request.element)});
     Event& event = events.back();
+    event.is_held = std::binary_search(held.begin(), held.end(), event.element);
     if (!request.impulse) continue;
     event.action = EventAction::strike;
     event.strike = strike_of(*request.impulse, model);

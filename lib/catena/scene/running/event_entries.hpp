@@ -14,8 +14,8 @@
 
 namespace catena {
 
-/// The task's events, in its order.
-std::vector<Event> events_of(const AnalysisTask& task, const Model& model);
+/// The task's events, in its order; `held`: SystemState::held of where the motion begins.
+std::vector<Event> events_of(const AnalysisTask& task, const Model& model, const std::vector<int>& held = {});
 
 class EventEntries {
  public:

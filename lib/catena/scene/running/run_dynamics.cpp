@@ -293,7 +293,8 @@ void DynamicsTask::run_with_events_or_pauses() {
   std::vector<std::string> reactions = context_.task.column_names();
   for (const EventRequest& request : context_.task.events) reactions.push_back(request.column);
   const PlanOptions plan = plan_options(*model_, reactions, context_.state);
-  DynamicsWithEvents analysis(model_, plan, used_options_, events_of(context_.task, *model_), sources, follows_ropes());
+  const std::vector<Event> events = events_of(context_.task, *model_, context_.state.held);
+  DynamicsWithEvents analysis(model_, plan, used_options_, events, sources, follows_ropes());
   std::string failure, taken_up;
   if (context_.checkpoint) {
     analysis.pause(pauses(failure));
@@ -304,9 +305,8 @@ void DynamicsTask::run_with_events_or_pauses() {
     }
   }
   plan_ = plan;
-  run_or_estimate(analysis, plan, [this, plan](const DynamicsOptions& options) {
-    return std::make_unique<DynamicsWithEvents>(model_, plan, options, events_of(context_.task, *model_), sources,
-                                                follows_ropes());
+  run_or_estimate(analysis, plan, [this, plan, events](const DynamicsOptions& options) {
+    return std::make_unique<DynamicsWithEvents>(model_, plan, options, events, sources, follows_ropes());
   });
   add_singular_points(result_, analysis.singular_points(), *model_);
   std::vector<std::string>& warnings = result_.report.warnings;

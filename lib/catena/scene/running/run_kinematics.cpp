@@ -174,7 +174,8 @@ void run_with_events(AnalysisContext& context, AnalysisResult& result, const Tim
   for (const EventRequest& request : task.events) reactions.push_back(request.column);
   PlanOptions plan = plan_without_gaps(*context.model, reactions, context.state);
   taut.add_rows(plan);
-  KinematicsWithEvents analysis(context.model, plan, options, events_of(task, *context.model), sources);
+  KinematicsWithEvents analysis(context.model, plan, options, events_of(task, *context.model, context.state.held),
+                                sources);
   WithRopes watched(analysis, ways, taut, "a motion with events does not go on: end it before, or do without events");
   run_over_time(context, result, watched, grid, task.output_names(), sources, [&](AnalysisRows& rows) {
     rows.watch_gaps(*context.model);
