@@ -15,6 +15,11 @@ function(catena_set_flags target)
     target_compile_options(${target} PRIVATE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
                                              -Wno-stringop-overread)
   endif()
+  # Several files at once take g++ some 1 GB. Collecting its garbage below that (in kB) takes it 6 to 13 % of its time and
+  # spares 10 to 20 % of the memory.
+  if(CATENA_BATCH AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=1000000)
+  endif()
   if(CATENA_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
