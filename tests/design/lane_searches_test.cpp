@@ -11,15 +11,15 @@ namespace catena::testing {
 namespace {
 
 /// A four-bar whose rocker is to swing by 0.8 rad, and whose pen is to rise to 0.5 m: not quite both; some designs
-/// lock.
+/// lock. Bobyqa comes to where the objective changes by rounding alone below a tolerance of 1e-6.
 std::string swing_of_a_rocker(const char* solver, const char* before) {
   const Family family{four_bar + "]," + drive, {"a", "b", "c", "d", "w"}, {}, {}};
   const std::string search = fmt::format(
       R"json({{"type": "optimise", "of": [{}{{"type": "kinematics", "from": "initial", "until": "=2*pi/w", "every": "=2*pi/w/48",
         "measures": {{"swing": {{"range": "rocker.angle"}}, "reach": {{"max": "coupler.pen.y"}}}}}}],
       "variables": {{"a": {{"min": 0.25, "max": 0.6, "start": 0.35}}, "c": {{"min": 0.7, "max": 1.2, "start": 1}}}},
-      "minimise": "=(swing - 0.8)^2 + 0.1*(reach - 0.5)^2", "solver": "{}", "max_evaluations": 500, "tolerance": 1e-7}})json",
-      before, solver);
+      "minimise": "=(swing - 0.8)^2 + 0.1*(reach - 0.5)^2", "solver": "{}", "max_evaluations": 500, "tolerance": {}}})json",
+      before, solver, std::string_view(solver) == "bobyqa" ? "1e-5" : "1e-7");
   return scene_of(family, {0.35, 1.1, 1, 1.2, 2}, search);
 }
 

@@ -76,6 +76,8 @@ std::optional<LaneColumns> LaneColumns::make(const LaneProgram& program, const M
   std::vector<NamedColumn> named;
   for (const std::string& name : names) {
     if (find_columns(model, name, named)) return {};
+    // What own columns and laws switch by is not computed in lanes.
+    if (named.back().column.kind == ColumnKind::own && named.back().column.detail >= 0) return {};
     if (named.back().column.kind == ColumnKind::own && find_own_inputs(model, named.back().column.index, inputs))
       return {};
   }

@@ -61,7 +61,7 @@ void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples:
     if (std::isfinite(sample.value[column_])) size_ = std::max(size_, std::abs(sample.value[column_]));
   }
   if (!is_integral()) return;
-  if (samples.switches()) note_switches(part, piece);
+  if (samples.switches() && parameters_ > 0) note_switches(part, piece);
   const double length = part.back().t - part.front().t;
   sum_gradient_.resize(parameters_, 0.0);
   squares_gradient_.resize(parameters_, 0.0);

@@ -40,6 +40,7 @@ MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model,
   std::erase_if(requests_, [](const MeasureRequest& request) { return request.kind == MeasureKind::field; });
   if (requests_.empty()) return;
   resolve(model, plan, sources);
+  is_driven_ = sources.analysis != "dynamics";
   for (const MeasureRequest& request : requests_) {
     if (needs_time(request.kind) && !sources.timed)
       throw std::invalid_argument(
@@ -68,12 +69,15 @@ void MeasureSet::resolve(const Model& model, const Plan& plan, const ColumnSourc
       if (known == names.end()) names.push_back(name);
     }
   }
-  if (!switches_.empty())
-    switched_columns_ = std::make_unique<ColumnSet>(ColumnSet::resolve(model, plan, names, untimed));
+  if (switches_.empty()) return;
+  auto switched = std::make_unique<ColumnSet>(ColumnSet::resolve(model, plan, names, untimed));
+  (sources.timed ? columns_ : switched_columns_) = std::move(switched);
 }
 
 void MeasureSet::open_accounts(const std::vector<std::array<std::size_t, 2>>& places) {
   samples_ = std::make_unique<MotionSamples>(*columns_, run_);
+  if (!switched_columns_) samples_->switch_columns(switches_);
+  if (is_driven_) samples_->follow_places();
   accounts_.clear();
   wants_samples_ = false;
   for (std::size_t k = 0; k < requests_.size(); ++k) {

@@ -128,7 +128,8 @@ class MeasureSet {
   std::vector<MeasureRequest> requests_;
   Breakpoints breakpoints_;
   std::unique_ptr<ColumnSet> columns_;
-  /// With derivatives: the same and, behind them, where they switch (columns/switches.hpp); null: nothing does.
+  /// Without time, for derivatives: the same and, behind them, where they switch (columns/switches.hpp), which
+  /// `columns_` has itself in time; null: nothing does.
   std::unique_ptr<ColumnSet> switched_columns_;
   std::vector<ColumnSwitch> switches_;
   std::unique_ptr<MotionSamples> samples_;
@@ -140,6 +141,7 @@ class MeasureSet {
   bool wants_samples_ = false;       // some measure depends on what is between rows
   bool looked_ = true;               // whether every stretch could be looked at
   bool may_end_ = false;
+  bool is_driven_ = false;  // its steps are not those of a method, which follow how fast bodies move
 };
 
 }  // namespace catena

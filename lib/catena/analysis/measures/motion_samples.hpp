@@ -3,11 +3,16 @@
 // A stretch [a, b] is looked at at its ends and at the seven nodes of the Gauss-Kronrod rule between them. The quartic
 // through five of these samples must foretell the other four to 1e-5 of the column's size; else the stretch is halved.
 // The quartic's error falls with the fifth power of the length, that of the rule of seven nodes with the eleventh or
-// twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends at 1/4096 of the distance of
-// rows, and earlier where it meets nothing but rounding. Source: R. Piessens et al., QUADPACK (1983), for the rule.
+// twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Of a column with a kink it is not: what its
+// samples have of polynomials of degree seven and eight is then a tenth of what the quartic misses, in place of a
+// hundredth and less, and such a part is halved on. Halving ends where less than 1e-11 of the whole integral is at
+// stake, and where it meets nothing but rounding, which does not become less between instants that are a millionth of
+// the part apart. However smooth its samples seem, a part in which a body turns further than 0.2 rad between two of
+// them, or, with rows inside, which are foretold as well, five times as far between these, is halved: rows may be many
+// turns apart. Source: R. Piessens et al., QUADPACK (1983), for the rule.
 //
-// With derivatives, columns come with what they switch by, as abs(v) does where v passes zero: parts end there
-// (switching.hpp), since derivatives jump. Where a switch stays at zero, and its derivative does not, those of the
+// Columns come with what they switch by, as abs(v) does where v passes zero: parts end there (switching.hpp), for
+// values and for derivatives, which jump. Where a switch stays at zero, and its derivative does not, those of the
 // column's two branches differ: it has none.
 //
 // Where a motion can be looked at anywhere, rows need not bound the stretches: pace() says how long the next one may be
@@ -48,6 +53,7 @@ struct MotionSample {
   std::vector<double> rate;
   /// Where a column is at a switch, both branches being equal with different derivatives, the column's bit.
   std::uint64_t undecided = 0;
+  double pace = 0;  ///< how fast bodies turn, rad/s, and move, in length scales, if that is followed
 };
 inline constexpr std::array<double, 3> limit_weights{3, -3, 1};
 /// Columns beyond the last bit share it.
@@ -102,6 +108,8 @@ class MotionSamples {
   /// Which columns switch: parts end there.
   void switch_columns(std::vector<ColumnSwitch> switches) { switches_ = std::move(switches); }
   bool switches() const { return !switches_.empty(); }
+  /// No part is longer than bodies take over a length scale, either.
+  void follow_places() { follows_places_ = true; }
 
   /// Derivatives are found later, of what limits are made of.
   void differentiate_later() { later_ = true; }
@@ -137,10 +145,9 @@ class MotionSamples {
   /// Takes the samples between a and b; false where the motion could not be looked at.
   bool fill(const MotionPiece& piece, const MotionSample& a, const MotionSample& b, Part& part);
   /// `shortened`: by what factor switches have.
-  bool cover_part(const MotionPiece& piece, const Part& part, double row_distance, double shortened,
+  bool cover_part(const MotionPiece& piece, const Part& part, double shortened,
                   const std::function<void(const Part&, const MotionPiece&)>& use);
-  bool cover_cut(const MotionPiece& piece, const Part& part, const std::array<MotionSample, 2>& cut,
-                 double row_distance, double shortened,
+  bool cover_cut(const MotionPiece& piece, const Part& part, const std::array<MotionSample, 2>& cut, double shortened,
                  const std::function<void(const Part&, const MotionPiece&)>& use);
   void use_part(const MotionPiece& piece, const Part& part,
                 const std::function<void(const Part&, const MotionPiece&)>& use) const;
@@ -149,12 +156,19 @@ class MotionSamples {
   bool is_tie(const MotionSample& sample, const ColumnSwitch& one) const;
   /// Takes out derivatives of columns whose branches are equal and have different ones.
   void judge_ties(MotionSample& sample) const;
-  /// By how much the polynomials miss what they must foretell, in parts of what is allowed; and what to expect in a
-  /// part of twice the length.
+  /// By how much the polynomials miss what they must foretell, in parts of what is allowed; what to expect in a part of
+  /// twice the length; and the largest in parts of a column's size.
   struct Misfit {
-    double here, if_twice;
+    double here, if_twice, of_size;
+    double kink;  ///< what may be one, in parts of a column's size
   };
   Misfit misfit(const Part& part) const;
+  /// Of a column's size, what its samples have of polynomials of degrees seven and eight, unless that falls as of what
+  /// is smooth.
+  double kink_of(const Part& part, std::size_t column) const;
+  /// Whether all columns that miss, or have kinks above this, do so by rounding; nothing where the motion could not be
+  /// looked at.
+  std::optional<bool> is_noise(const MotionPiece& piece, const Part& part, double least_kink) const;
   /// By how much the polynomial through all samples misses the rows inside, in parts of the columns' sizes.
   double misfit_of_rows(const Part& part) const;
   double miss(double foretold, double there, std::size_t column) const;
@@ -177,7 +191,7 @@ class MotionSamples {
   DifferentiateColumns derivatives_;
   Values values_;
   std::vector<ColumnSwitch> switches_;
-  bool always_ = false, later_ = false;
+  bool always_ = false, later_ = false, follows_places_ = false;
 };
 
 }  // namespace catena

@@ -58,13 +58,12 @@ void MotionSamples::use_part(const MotionPiece& piece, const Part& part,
 }
 
 bool MotionSamples::cover_cut(const MotionPiece& piece, const Part& part, const std::array<MotionSample, 2>& cut,
-                              double row_distance, double shortened,
-                              const std::function<void(const Part&, const MotionPiece&)>& use) {
+                              double shortened, const std::function<void(const Part&, const MotionPiece&)>& use) {
   const double length = shortened * (part.back().t - part.front().t);
   for (const bool second : {false, true}) {
     const MotionSample &a = second ? cut[1] : part.front(), &b = second ? part.back() : cut[0];
     Part half;
-    if (!fill(piece, a, b, half) || !cover_part(piece, half, row_distance, length / (b.t - a.t), use)) return false;
+    if (!fill(piece, a, b, half) || !cover_part(piece, half, length / (b.t - a.t), use)) return false;
   }
   return true;
 }

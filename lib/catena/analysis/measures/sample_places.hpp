@@ -22,6 +22,8 @@ inline constexpr std::array<double, 7> half_weights = {
     0.401397414775962222905051818618432 / 2, 0.450916538658474142345110087045571 / 2,
     0.401397414775962222905051818618432 / 2, 0.268488089868333440728569280666710 / 2,
     0.104656226026467265193823857192073 / 2};
+/// Between two neighbouring samples, in parts of the length.
+inline constexpr double widest_gap = places[4] / 2;
 // Samples of a part that the quartic goes through (both ends, three nodes), and those that it must foretell.
 inline constexpr std::array<std::size_t, 5> known = {0, 2, 4, 6, 8};
 inline constexpr std::array<std::size_t, 4> foretold = {1, 3, 5, 7};
@@ -36,6 +38,21 @@ inline std::array<double, 9> barycentric_weights() {
     for (std::size_t j = 0; j < weights.size(); ++j) {
       if (j != k) weights[k] /= place_of(k) - place_of(j);
     }
+  }
+  return weights;
+}
+
+/// Weights of the samples in the coefficient of degree seven, of all but the one in the middle, and of degree eight, as
+/// one of Chebyshev's polynomial: divided differences over 2^6 and 2^7.
+inline std::array<std::array<double, 9>, 2> highest_weights() {
+  std::array<std::array<double, 9>, 2> weights{};
+  for (std::size_t k = 0; k < 9; ++k) {
+    double without = 1;
+    for (std::size_t j = 0; j < 9; ++j) {
+      if (j != k && j != 4) without /= place_of(k) - place_of(j);
+    }
+    weights[0][k] = k == 4 ? 0 : without / 64;
+    weights[1][k] = k == 4 ? without / 128 : without / (128 * (place_of(k) - place_of(4)));
   }
   return weights;
 }
