@@ -149,5 +149,57 @@ TEST(InverseFriction, AgreesWithDynamics) {
   }
 }
 
+/// The integral of |weight - pull cos(nu t)| from zero to t.
+double pressed(double weight, double pull, double nu, double t) {
+  const auto sum = [&](double at) { return weight * at - pull * std::sin(nu * at) / nu; };
+  double total = 0, from = 0;
+  for (int zero = 0; from < t; ++zero) {
+    const double turn = std::acos(weight / pull), turns = 2 * std::acos(-1.0) * (zero / 2);
+    const double to = std::min(t, (zero % 2 == 0 ? turns + turn : turns + 2 * std::acos(-1.0) - turn) / nu);
+    total += std::abs(sum(to) - sum(from));
+    from = to;
+  }
+  return total;
+}
+
+// A block goes along its guide, and an arm round its pin, at constant speed, while a force lifts them now and then: N
+// is the size of what bends where they lose and meet their support, and the drivers give what friction takes.
+TEST(InverseFriction, WorkWhereWhatPressesTurnsRound) {
+  std::mt19937 engine(5);
+  const auto between = [&](double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(engine);
+  };
+  for (int n = 0; n < 12; ++n) {
+    const double mass = between(1, 3), pull = mass * 9.81 * between(1.05, 4), nu = between(2, 12),
+                 mu = between(0.1, 0.6);
+    const double speed = between(0.5, 3), smooth = between(0.05, 0.5), every = n % 3 == 0 ? 2 : between(0.05, 0.5);
+    SCOPED_TRACE(n);
+    const bool slides = n % 2 == 0;
+    const std::string guided = R"("constraints": [{"type": "translational", "name": "J", "i": ["ground", [0, 0]],
+        "j": ["b", [0, 0]], "axis_i": [1, 0], "axis_j": [1, 0]}],
+      "drivers": [{"type": "displacement", "name": "D", "i": ["ground", [0, 0]], "j": ["b", [0, 0]], "axis_i": [1, 0],)";
+    const std::string pinned = R"("constraints": [{"type": "revolute", "name": "J", "i": "ground", "j": ["b", [0, 0]]}],
+      "drivers": [{"type": "absolute_angle", "name": "D", "i": "b",)";
+    const TextRun run = run_text(fmt::format(
+        R"({{"catena": 1, "gravity": [0, -9.81],
+      "bodies": {{"b": {{"mass": {0}, "inertia": 0.2, "position": [0, 0], "points": {{"o": [0, 0], "r": [0.5, 0]}}}}}},
+      {1} "value": {{"polynomial": [0, {2}]}}}}],
+      "forces": [{{"type": "friction", "name": "rub", "joint": "J", "mu": {3}, {4}}},
+                 {{"type": "point_force", "i": "b.o", "force": [0, {{"harmonic": {{"amplitude": {5}, "omega": {6},
+                   "phase": 1.5707963267948966}}}}]}}],
+      "outputs": ["D.work", "energy.dissipated"], "analyses": [{{"type": "inverse_dynamics", "until": 2, "every": {7}}}]}})",
+        mass, slides ? guided : pinned, speed, mu, slides ? fmt::format(R"("vs": {})", smooth) : R"("radius": 0.1)",
+        pull, nu, every));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    const double power = mu * speed * (slides ? std::tanh(speed / smooth) : 0.1);
+    const std::vector<double> t = run.column("t"), work = run.column("D.work"), lost = run.column("energy.dissipated");
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      const double right = power * pressed(mass * 9.81, pull, nu, t[k]);
+      EXPECT_NEAR(work[k], right, 2e-9 * (1 + right)) << t[k];
+      EXPECT_NEAR(lost[k], right, 2e-9 * (1 + right)) << t[k];
+    }
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

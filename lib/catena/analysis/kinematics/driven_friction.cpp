@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -54,6 +55,16 @@ Report DrivenFriction::no_friction(double t) const {
   report.status = Status::inconsistent;
   report.message = fmt::format("at t = {:.12g} s {}", t, loads_->trouble());
   return report;
+}
+
+void DrivenFriction::read_pressing(std::span<const double> lambda, std::vector<double>& pressing) const {
+  pressing.clear();
+  for (const ContactPoint& joint : joints_) {
+    const std::size_t row = at(evaluator_.plan().element_row[at(joint.joint)]);
+    pressing.push_back(lambda[row]);
+    if (std::isfinite(joint.half_length) || !evaluator_.plan().row_is_angle[row + 1])
+      pressing.push_back(lambda[row + 1]);
+  }
 }
 
 void DrivenFriction::add_remarks(std::vector<std::string>& warnings) const {

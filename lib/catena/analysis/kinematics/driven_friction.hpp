@@ -45,6 +45,9 @@ class DrivenFriction {
   /// Power lost then.
   double dissipation() const;
   void add_remarks(std::vector<std::string>& warnings) const;
+  /// What N bends at the zero of, from multipliers: of a guide its force, and its moment if it counts; of other joints
+  /// x and y of the force.
+  void read_pressing(std::span<const double> lambda, std::vector<double>& pressing) const;
 
  private:
   void begin(double t, std::span<const double> qd, std::span<double> friction);

@@ -40,6 +40,7 @@ class DrivenReactions {
   /// Of joints with friction, by element; empty: there are none.
   std::span<const ContactLoad> friction() const { return friction_.loads(); }
   double dissipation() const { return friction_.dissipation(); }
+  void read_pressing(std::vector<double>& pressing) const { friction_.read_pressing(lambda_, pressing); }
   /// What is to be said of the multipliers of all rows so far.
   void add_remarks(std::vector<std::string>& warnings) const;
 

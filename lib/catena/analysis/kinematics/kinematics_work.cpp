@@ -64,8 +64,8 @@ void Kinematics::see_end_of_stretch(bool first, Side inside) {
 }
 
 // One stretch further, to t: the powers inside, then the rates there. `error`: estimate of that of the sums, J. Where
-// friction reverses, what it takes bends, and what the driver gives with it, so that the gap of energies does not show
-// it: such a stretch counts as wrong by the largest loss in it times its length.
+// friction reverses, or what presses does, what it takes bends, and what the driver gives with it, so that the gap of
+// energies does not show it: such a stretch counts as wrong by the largest loss in it times its length.
 Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::string>& warnings) {
   const double from = now_.t;
   const bool rubs = !reactions_.friction().empty();
@@ -87,12 +87,23 @@ Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::stri
         visit(from + (t - from) * WorkSum::places[k], {.velocity = true, .acceleration = true, .multipliers = true});
     if (!moved.ok()) return moved;
     work_.add_point(k, t - from, now_.qd, reactions_.multipliers(), reactions_.dissipation());
+    if (rubs) reactions_.read_pressing(work_.pressing(1 + k));
     most_lost = std::max(most_lost, reactions_.dissipation());
   }
   if (Report moved = visit(t, {.velocity = true, .acceleration = true}); !moved.ok()) return moved;
   see_end_of_stretch(false, t > from ? Side::before : Side::after);
   error = work_.stretch_error(t - from, snapshot());
-  if (rubs && ways_of_slips(evaluator_, now_.qd) != ways) error = std::max(error, most_lost * std::abs(t - from));
+  if (!rubs) return {};
+  const std::vector<int> ways_there = ways_of_slips(evaluator_, now_.qd);
+  std::vector<double>& pressing = work_.pressing(WorkSum::places.size() + 1);
+  pressing.clear();
+  const bool rests = std::find(ways_there.begin(), ways_there.end(), 0) != ways_there.end();
+  if (!rests && !Breakpoints(model_->functions).contain(t)) {
+    if (Report solved = find_rates({.velocity = true, .acceleration = true, .multipliers = true}); !solved.ok())
+      return solved;
+    reactions_.read_pressing(pressing);
+  }
+  if (ways_there != ways || work_.pressing_turns()) error = std::max(error, most_lost * std::abs(t - from));
   return {};
 }
 

@@ -111,6 +111,7 @@ void WorkSum::take_back() {
 
 void WorkSum::keep(double error, double allowed) {
   if (error > allowed) unsure_ += error;
+  samples_.go_on();
   if (error < allowed / 64) part_ = std::min(1.0, 2 * part_);
 }
 

@@ -52,6 +52,9 @@ class WorkSum {
   /// `lost`: by friction.
   void add_point(std::size_t point, double span, std::span<const double> qd, std::span<const double> lambda,
                  double lost);
+  /// At a place of the stretch, 0 and 5 its ends; see PowerSamples.
+  std::vector<double>& pressing(std::size_t place) { return samples_.pressing(place); }
+  bool pressing_turns() const { return samples_.pressing_turns(); }
   /// Estimate of the error, J, of the stretch that ends with this snapshot.
   double stretch_error(double span, const Snapshot& end) const;
   /// Whether a law may switch in the stretch, which is longer than such stretches may be.

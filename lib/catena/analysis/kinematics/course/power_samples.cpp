@@ -23,7 +23,10 @@ constexpr std::array<std::array<double, PowerSamples::places>, 4> polynomials = 
 
 }  // namespace
 
-void PowerSamples::begin(const Evaluator& evaluator) { laws_.begin(evaluator); }
+void PowerSamples::begin(const Evaluator& evaluator) {
+  laws_.begin(evaluator);
+  for (std::vector<double>& there : pressing_) there.clear();
+}
 
 void PowerSamples::take(std::size_t place, double dissipated, double supplied, std::span<const double> qd) {
   power_[0][place] = dissipated;
@@ -43,6 +46,21 @@ double PowerSamples::error(double span) const {
     largest = std::max(largest, std::abs(span) * top * (part < 1 ? part * part : 1));
   }
   return largest;
+}
+
+bool PowerSamples::pressing_turns() const {
+  for (std::size_t k = 0; k < pressing_[1].size(); ++k) {
+    std::array<double, places> t{}, v{};
+    std::size_t known = 0;
+    for (std::size_t place = 0; place < places; ++place) {
+      if (pressing_[place].empty()) continue;
+      t[known] = place_in_stretch[place];
+      v[known++] = pressing_[place][k];
+    }
+    if (LawSwitches::may_switch(std::span<const double>(t).first(known), std::span<const double>(v).first(known)))
+      return true;
+  }
+  return false;
 }
 
 bool PowerSamples::may_switch() const {
