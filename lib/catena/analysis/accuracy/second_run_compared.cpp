@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string_view>
 
 #include "catena/analysis/accuracy/disturbance.hpp"
 #include "catena/analysis/accuracy/second_run_rows.hpp"
@@ -117,7 +118,7 @@ double SecondRun::rounded_size(UnitKind unit, double value) const {
 
 void SecondRun::compare(const OtherRows& other, const MotionRounding& rounding, double common) {
   const std::size_t width = columns_.size();
-  std::vector<std::string> unjudged;
+  std::vector<std::string> unjudged, alone;
   std::map<UnitKind, double> largest;
   for (std::size_t k = 0; k < width; ++k) {
     double& of_unit = largest[columns_.info()[k].unit];
@@ -127,6 +128,7 @@ void SecondRun::compare(const OtherRows& other, const MotionRounding& rounding, 
     const ColumnInfo& column = columns_.info()[k];
     const double least = rounding.least_error(column.unit);
     bool judged = true, differs = false;
+    std::size_t acting = 0;  // rows in which it is not zero
     for (std::size_t row = 0; row < rows_.t.size() && judged; ++row) {
       const double t = rows_.t[row], value = rows_.values[row * width + k], beside = other.values[row * width + k];
       judged = is_judged(column.unit, row);
@@ -137,18 +139,29 @@ void SecondRun::compare(const OtherRows& other, const MotionRounding& rounding, 
       const bool given = column.unit == UnitKind::time && value == beside;
       const double own = given ? 0 : relative * rounded_size(column.unit, value);
       differs |= std::abs(value - beside) > own;
+      acting += value != 0 || beside != 0;
       errors_.take_error(k, factor_of_difference * std::abs(value - beside) + own + least);
     }
     if (differs && is_of_bodies(column.unit))
       errors_.take_error(k, factor_of_difference * part_of_largest * largest[column.unit]);
     if (const double drift = error_of_drift(column.unit); drift > 0) errors_.take_error(k, drift);
+    // Where it is not zero in one row alone the two errors may agree there by chance, and nothing else tells.
+    if (differs && acting == 1 && rows_.t.size() > 1 && !is_of_bodies(column.unit)) {
+      errors_.take_error(k, unknown_error);
+      alone.push_back(column.name);
+      continue;
+    }
     if (judged) continue;
     errors_.take_error(k, unknown_error);
     unjudged.push_back(column.name);
   }
-  if (unjudged.empty()) return;
-  why_ = fmt::format("no digits are claimed of {} column{}: a row lies where they jump, as near as that is known ({})",
-                     unjudged.size(), unjudged.size() == 1 ? "" : "s", unjudged.front());
+  const auto tell = [this](const std::vector<std::string>& columns, std::string_view reason) {
+    if (columns.empty()) return;
+    why_ += fmt::format("{}no digits are claimed of {} column{}: {} ({})", why_.empty() ? "" : "; ", columns.size(),
+                        columns.size() == 1 ? "" : "s", reason, columns.front());
+  };
+  tell(unjudged, "a row lies where they jump, as near as that is known");
+  tell(alone, "of what is zero in all rows but one, one difference alone is known");
 }
 
 }  // namespace catena
