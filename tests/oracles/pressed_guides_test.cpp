@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
@@ -22,8 +23,8 @@ namespace {
 constexpr double a = 0.2, m = 1, h = 0.14, length = 0.2, mu = 0.5, s = 0.5, Q = -8;
 const double c = std::sqrt(0.75);
 
-/// `torque` grows with time by this rate.
-std::string guide(double p, double torque, double slip, const std::string& method) {
+/// `torque`: its value at the start, and its rate.
+std::string guide(double p, std::pair<double, double> torque, double slip, const std::string& method) {
   return fmt::format(
       R"({{"catena": 1, "bodies": {{"cart": {{"mass": {}, "inertia": 1}}, "block": {{"mass": {}, "inertia": 0.1,
         "position": {}, "velocity": {}}}}},
@@ -31,12 +32,12 @@ std::string guide(double p, double torque, double slip, const std::string& metho
         "value": 0}}, {{"type": "translational", "name": "J", "i": "cart", "axis_i": {}, "j": ["block", {}],
         "axis_j": {}}}],
       "forces": [{{"type": "point_force", "i": "cart", "force": [{}, 0]}}, {{"type": "point_force", "i": "block",
-        "force": {}}}, {{"type": "torque", "i": "block", "torque": {{"polynomial": [0, {}]}}}},
+        "force": {}}}, {{"type": "torque", "i": "block", "torque": {{"polynomial": {}}}}},
         {{"type": "friction", "name": "rub", "joint": "J", "mu": {}, "length": {}}}],
       "outputs": ["J.slide", "rub.friction"], "analyses": [{{"type": "dynamics", "until": 1, "every": 0.1,
         "method": "{}", "tolerance": 1e-9}}]}})",
       a, m, pair_of(-h * s, h * c), pair_of(slip * c, slip * s), pair_of(c, s), pair_of(h * s, -h * c), pair_of(c, s),
-      Q, pair_of(p * c, p * s), torque, mu, length, method);
+      Q, pair_of(p * c, p * s), pair_of(torque.first, torque.second), mu, length, method);
 }
 
 /// The friction before the bend, where n and the moment keep their signs.
@@ -57,7 +58,7 @@ TEST(PressedGuides, EndInconsistentWhereNoFrictionFits) {
   const double jerk = acceleration(1) - acceleration(0);
   for (const std::string method : {"rk8", "rk5", "adams", "radau"}) {
     SCOPED_TRACE(method);
-    const TextRun run = run_text(guide(push, rate, slip, method));
+    const TextRun run = run_text(guide(push, {0, rate}, slip, method));
     const Report& report = run.analysis().report;
     EXPECT_EQ(report.status, Status::inconsistent) << report.message << run.outcome.error_text;
     EXPECT_NE(report.message.find("\"rub\""), std::string::npos) << report.message;
@@ -72,6 +73,22 @@ TEST(PressedGuides, EndInconsistentWhereNoFrictionFits) {
   }
 }
 
+// Force and moment both press more where friction is larger, by more than it: what is found in turns moves away.
+TEST(PressedGuides, SlideUnderFrictionThatIncreasesWithItself) {
+  constexpr double T = 2, push = 14, slip = 0.3, inertia = a + m * s * s;
+  ASSERT_GT(mu * (m * s * c / inertia + 2 * h / length), 1);
+  const double f = -mu * (-m * s * Q / inertia + 2 * T / length) / (1 + mu * (m * s * c / inertia + 2 * h / length));
+  ASSERT_LT(Q - f * c, 0);
+  ASSERT_GT(T + h * f, 0);
+  const double acceleration = (push + f) / m - c * (Q - f * c) / inertia;
+  for (const std::string method : {"auto", "radau"}) {
+    const TextRun run = run_text(guide(push, {T, 0}, slip, method));
+    ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message << run.outcome.error_text;
+    EXPECT_NEAR(run.first("rub.friction"), f, 1e-9);
+    EXPECT_NEAR(run.last("J.slide"), slip + acceleration / 2, 1e-8);
+  }
+}
+
 // At rest, pulled so hard that friction holds it only with the normal force that itself makes: it may slip as well.
 TEST(PressedGuides, StickWhereTheyMayAndTellThatTheyMaySlip) {
   constexpr double push = 60;
@@ -80,7 +97,7 @@ TEST(PressedGuides, StickWhereTheyMayAndTellThatTheyMaySlip) {
   ASSERT_LT(std::abs(held), mu * normal);
   const double free = friction(0);
   ASSERT_GT((push + free) / m - c * (Q - free * c) / inertia, 0);
-  const TextRun run = run_text(guide(push, 0, 0, "auto"));
+  const TextRun run = run_text(guide(push, {0, 0}, 0, "auto"));
   ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message << run.outcome.error_text;
   EXPECT_NEAR(run.last("J.slide"), 0, 1e-9);
   EXPECT_NEAR(run.last("rub.friction"), held, 1e-9);
