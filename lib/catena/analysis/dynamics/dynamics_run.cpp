@@ -215,10 +215,10 @@ Report Dynamics::next(RowObserver& observer) {
 Report Dynamics::step(RowObserver& observer) {
   const double limit = std::min(next_breakpoint(t_), run_.grid.last());
   double reach = law_stretches_ ? std::min(limit, law_stretches_->limit(t_)) : limit;
-  // Where drivers move all, a law says nothing of itself in the errors of the motion: its work alone does, at the
-  // stages.
-  if (work_.account && options_.step == 0 && !evaluator_.laws().empty() && freedoms() == 0 &&
-      under_way_.integrator->rate() > 0)
+  // Where drivers move all, a law or a cable says nothing of itself in the errors of the motion: its work alone does,
+  // at the stages.
+  if (work_.account && options_.step == 0 && freedoms() == 0 && under_way_.integrator->rate() > 0 &&
+      (!evaluator_.laws().empty() || under_way_.motion->switches().has_cables()))
     reach = std::min(reach, t_ + thresholds::driven_stretch / under_way_.integrator->rate());
   if (!under_way_.integrator->advance(reach)) return stuck();
   const double before = t_;

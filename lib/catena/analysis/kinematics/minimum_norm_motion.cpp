@@ -216,7 +216,7 @@ bool MinimumNormMotion::evaluate_stages(double h, double end, bool lands_on_brea
 double MinimumNormMotion::error_size(double h) const {
   if (h == 0) return 0;
   const double high = least_.size(error_) / tolerance, low = least_.size(error_low_) / tolerance;
-  const double denominator = std::sqrt(high * high + 0.01 * low * low);
+  const double denominator = std::hypot(high, 0.1 * low);
   return denominator == 0 ? 0 : high * high / denominator;
 }
 

@@ -18,12 +18,20 @@ void StepSwitches::begin_step(double t) {
   count_ = 0;
 }
 
-void StepSwitches::note(double t, std::span<const double> qd) {
-  if (!known_) {
-    laws_.begin(evaluator_);
-    for_each_slack(evaluator_, [this](double, double, int) { cables_ = true; });
-  }
+void StepSwitches::find_what_switches() {
+  if (known_) return;
   known_ = true;
+  laws_.begin(evaluator_);
+  for_each_slack(evaluator_, [this](double, double, int) { cables_ = true; });
+}
+
+bool StepSwitches::has_cables() {
+  find_what_switches();
+  return cables_;
+}
+
+void StepSwitches::note(double t, std::span<const double> qd) {
+  find_what_switches();
   if (!laws_.any() && !cables_) return;
   std::size_t k = 0;
   while (k < count_ && samples_[k].t != t) ++k;

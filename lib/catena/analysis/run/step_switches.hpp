@@ -27,6 +27,8 @@ class StepSwitches {
   void begin_step(double t);
   /// At the evaluator's configuration; one at the same time is replaced.
   void note(double t, std::span<const double> qd);
+  /// Whether there are cables or ropes at all.
+  bool has_cables();
   /// What may switch between two samples.
   Found found() const;
 
@@ -36,6 +38,7 @@ class StepSwitches {
     std::vector<double> of_laws, of_cables;
   };
   using Values = std::vector<double> Sample::*;
+  void find_what_switches();
   bool may_switch(Values values) const;
 
   const Evaluator& evaluator_;

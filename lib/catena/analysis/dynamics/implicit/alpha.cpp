@@ -206,16 +206,18 @@ double Alpha::error_within(double h) {
   return size_of(unseen, h, h * h / 2, h / 2, 1);
 }
 
-// Of the work of loads and of what dampers take, by the second difference of their powers: the trapezoid rule.
+// Of the work of loads, of what dampers take and of drivers, by the second difference of their powers: the trapezoid
+// rule.
 double Alpha::error_of_work(double h, double ratio) const {
+  const std::span<const double> end(slope_new_);
   double largest = 0;
-  for (const std::size_t place : ErrorScale::judged(motion_.works())) {
+  for (std::size_t place = 0; place < judged_works(); ++place) {
     const std::size_t k = 2 * motion_.coordinates() + place;
     const double change = slope_new_[k] - slope_[k];
     const double error = h / 12 * std::abs(change - ratio * (slope_[k] - slope_before_[k]));
     if (error == 0) continue;
-    largest = std::max(largest, scale_.size_of_work(error, y_[k], y_[k] + h / 2 * (slope_[k] + slope_new_[k]), h,
-                                                    motion_.equations().applied_forces()));
+    largest = std::max(largest, scale_.size_of_work(error, {h, y_[k], y_[k] + h / 2 * (slope_[k] + slope_new_[k])},
+                                                    motion_.equations().applied_forces(), motion_.qd(end)));
   }
   return largest;
 }

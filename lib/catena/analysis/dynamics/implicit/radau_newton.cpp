@@ -172,18 +172,18 @@ void Radau::sum_up_work(double h) {
 // RungeKutta::error_of_work asks.
 double Radau::error_of_work(double h) const {
   const RadauTableau& table = radau_tableau();
+  const std::span<const double> end(f_[2]);
   const std::size_t usual = ErrorScale::judged(motion_.works()).size();
-  const bool of_drivers = judges_drivers(switches_.any());
   double largest = 0;
-  for (std::size_t place = 0; place < (of_drivers ? motion_.works() : usual); ++place) {
+  for (std::size_t place = 0; place < judged_works(); ++place) {
     const std::size_t k = 2 * motion_.coordinates() + place;
     double error = h * slope_[k];
     for (std::size_t i = 0; i < 3; ++i) error += table.error[i] * z_[i][k];
     error = std::abs(error) / table.real;
     const bool bends = place < usual ? switches_.laws : switches_.any();
     if (bends) error = std::max(error, ErrorScale::error_of_switch(h, slope_[k], f_[2][k], z_[2][k]));
-    largest =
-        std::max(largest, scale_.size_of_work(error, y_[k], y_[k] + z_[2][k], h, motion_.equations().applied_forces()));
+    largest = std::max(largest, scale_.size_of_work(error, {h, y_[k], y_[k] + z_[2][k]},
+                                                    motion_.equations().applied_forces(), motion_.qd(end)));
   }
   return largest;
 }

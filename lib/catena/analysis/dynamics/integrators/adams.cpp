@@ -88,7 +88,8 @@ inline double Adams::weight(std::size_t c, double h) const {
 // The same of the power of loads and of what dampers take: see RungeKutta::error_of_work.
 double Adams::weight_of_work(std::size_t place, double h) const {
   const std::size_t work = 2 * motion_.coordinates() + place;
-  return h * scale_.size_of_work(1, y_[work], y_[work] + h * slope_[work], h, motion_.equations().applied_forces());
+  return h * scale_.size_of_work(1, {h, y_[work], y_[work] + h * slope_[work]}, motion_.equations().applied_forces(),
+                                 accelerations());
 }
 
 // Errors at orders k, k-1 and k-2, as if steps had one length.
@@ -110,7 +111,7 @@ Adams::Errors Adams::estimate(double h) {
   for (std::size_t c = 0; c < motion_.moving(); ++c) {
     if (compare(c, weight(c, h))) culprit_ = static_cast<int>(c);
   }
-  for (std::size_t place = 0; place < judged_works(false); ++place)
+  for (std::size_t place = 0; place < judged_works(); ++place)
     compare(motion_.coordinates() + place, weight_of_work(place, h));
   errors.now *= history_.sigma(k_ + 1, h) * steady_error[k_];
   if (one) errors.below *= history_.sigma(k_, h) * steady_error[k_ - 1];
@@ -126,7 +127,7 @@ double Adams::estimate_above(double h) const {
     largest = std::max(largest, unit * std::abs(slope_[n + c] - predicted_[c] - difference_[k_ + 1][c]));
   };
   for (std::size_t c = 0; c < motion_.moving(); ++c) compare(c, weight(c, h));
-  for (std::size_t place = 0; place < judged_works(false); ++place) compare(n + place, weight_of_work(place, h));
+  for (std::size_t place = 0; place < judged_works(); ++place) compare(n + place, weight_of_work(place, h));
   return largest * steady_error[k_ + 1];
 }
 
@@ -167,11 +168,6 @@ void Adams::add_error(std::span<double> error) const {
   std::fill(error.begin(), error.end(), std::numeric_limits<double>::quiet_NaN());
 }
 
-// The first of these integrals; those of drivers follow the others.
-std::size_t Adams::judged_works(bool switches) const {
-  return judges_drivers(switches) ? motion_.works() : ErrorScale::judged(motion_.works()).size();
-}
-
 double Adams::error_of_work(double h) const {
   const std::size_t n = motion_.coordinates();
   const double once = weights_.integral[k_] / weights_.value[k_] - weights_.integral[k_ + 1] / weights_.value[k_ + 1];
@@ -181,7 +177,7 @@ double Adams::error_of_work(double h) const {
   // no more than it differs from the trapezoid rule.
   const StepSwitches::Found switches = motion_.switches().found();
   double largest = 0;
-  for (std::size_t place = 0; place < judged_works(switches.any()); ++place) {
+  for (std::size_t place = 0; place < judged_works(); ++place) {
     const std::size_t k = 2 * n + place;
     double error = std::abs(once * (slope_[k] - predicted_[n + place]));
     if (place < usual ? switches.laws : switches.any()) {

@@ -32,7 +32,9 @@ class Adams final : public CrossingIntegrator {
   IntegratorMemory memory() const override;
   void remember(const IntegratorMemory& memory) override;
   void add_error(std::span<double> error) const override;
-  std::span<const double> accelerations() const override { return std::span(slope_).first(motion_.coordinates()); }
+  std::span<const double> accelerations() const override {
+    return std::span(slope_).subspan(motion_.coordinates(), motion_.coordinates());
+  }
   double rate() const override { return scale_.rate(); }
 
  private:
@@ -55,7 +57,6 @@ class Adams final : public CrossingIntegrator {
   double error_of_step(double h);
   double error_within(double h);
   double weight_of_work(std::size_t place, double h) const;
-  std::size_t judged_works(bool switches) const;
   double error_of_work(double h) const;
   double estimate_above(double h) const;
   double filtered(double h, double raw);

@@ -51,8 +51,12 @@ class CrossingIntegrator : public Integrator {
   bool tells_work() const { return energy_.tells_work(motion_); }
   /// The same within the last step, for a y that is near the constraints, from the end of the step.
   void tell_work_between(double t, std::span<double> y) const;
-  /// Whether errors of the work of single drivers bound the step, in which forces switch or not.
-  bool judges_drivers(bool switches) const { return energy_.leaves_drivers(motion_, switches); }
+  /// Whether errors of the work of single drivers bound the step.
+  bool judges_drivers() const { return energy_.leaves_drivers(motion_); }
+  /// Of the integrals of a motion, how many bound the step: those of drivers follow the others.
+  std::size_t judged_works() const {
+    return judges_drivers() ? motion_.works() : ErrorScale::judged(motion_.works()).size();
+  }
   /// How far accelerations within a first step of length h leave the straight line from `begin` to `end`, of which
   /// methods of low order know alone: forces may be zero at both. The largest at the stages of order 8, on the way that
   /// the first one gives; infinite where there are none. The evaluator is elsewhere then.

@@ -99,14 +99,19 @@ class ErrorScale {
   static std::span<const std::size_t> judged(std::size_t works) {
     return works > 0 ? std::span<const std::size_t>(judged_integrals) : std::span<const std::size_t>();
   }
-  /// An error of work, J, in a step that begins and ends with these sums, compared with what may be: a part of what the
-  /// balance of energy may miss (balance_watch.hpp), by the kinetic energy and the work so far; at least what loads F
-  /// do in displacements that count as nothing: F L (tolerance^2 + h^2 rounding). `loads`: at the end of the step of
-  /// size h, for at a start where they grow from zero those of the beginning say nothing.
-  double size_of_work(double error, double begin, double end, double h, std::span<const double> loads) const {
-    const double energy = root_energy_ * root_energy_ + std::max(std::abs(end), std::abs(end - begin));
+  /// A step of size h, s, and what one of the works is at its beginning and end, J.
+  struct WorkInStep {
+    double h, begin, end;
+  };
+  /// An error of work, J, compared with what may be: a part of what the balance of energy may miss (balance_watch.hpp),
+  /// by the kinetic energy and the work so far; at least what loads F, or those that accelerate all masses together, do
+  /// in displacements that count as nothing: F L (tolerance^2 + h^2 rounding). `loads`, `qdd`: at the end of the step,
+  /// for at a start where they grow from zero those of the beginning say nothing.
+  double size_of_work(double error, const WorkInStep& work, std::span<const double> loads,
+                      std::span<const double> qdd) const {
+    const double energy = root_energy_ * root_energy_ + std::max(std::abs(work.end), std::abs(work.end - work.begin));
     double allowed = loosened(work_part * step_tolerance) * energy;
-    if (error > allowed) allowed = std::max(allowed, work_of_nothing(h, loads));
+    if (error > allowed) allowed = std::max(allowed, work_of_nothing(work.h, loads, qdd));
     return allowed > 0 ? error / allowed : 0;
   }
   /// What the work done in a step of size h, in which powers go from `begin` to `end`, may be wrong by where a power
@@ -173,9 +178,12 @@ class ErrorScale {
       if (mass_[c] > 0) acceleration = std::max(acceleration, force * inverse_[c]);
     }
   }
-  double work_of_nothing(double h, std::span<const double> loads) const {
+  double work_of_nothing(double h, std::span<const double> loads, std::span<const double> qdd) const {
     double force = force_, acceleration = acceleration_;
     measure_loads(loads.first(mass_.size()), force, acceleration);
+    double inertia = 0;
+    for (std::size_t c = 0; c < mass_.size(); ++c) inertia += mass_[c] * std::abs(qdd[c]) / (c % 3 == 2 ? length : 1);
+    force = std::max(force, inertia);
     return force * length * (tolerance_ * tolerance_ + h * h * condition_ * thresholds::few_roundings * acceleration);
   }
   void measure(std::span<const double> qd, std::span<const double> qdd) {

@@ -61,7 +61,7 @@ void RungeKutta::add_error(std::span<double> error) const {
       high = std::max(high, unit * std::abs(error_.high[offset + c]));
       low = std::max(low, unit * std::abs(error_.low[offset + c]));
     }
-    factor = high > 0 ? high / std::sqrt(high * high + 0.01 * low * low) : 0;
+    factor = high > 0 ? high / std::hypot(high, 0.1 * low) : 0;
   }
   // The last stage lies at the end of the step, beside the motion. Where it is the end itself, as of order 5 without a
   // projection, accelerations differ by rounding alone.
@@ -84,17 +84,17 @@ void RungeKutta::add_error(std::span<double> error) const {
   }
 }
 
-// The error of the loads' work and of what dampers take in units of what the balance of energy may miss: where a load
-// changes in time and moves nothing, and where drivers move all, no other error says so. Of drivers nothing is asked,
-// as their loads have no bound near singular positions, but where a force switches within the step and the balance does
-// not tell what they do: a cable that pulls on driven bodies alone has no part in the errors of the motion; and where
-// several drivers move all of the mechanism, of which the balance tells the sum, and nothing else bounds steps. In a
-// step with a switch both estimates of order 8 together bound the error, as neither does alone: it is 2.9 and 3.1 times
-// both at most if a power bends or jumps anywhere; of order 5 the trapezoid rule takes the place of the other one.
+// The error of the work of loads, of what dampers take and of what each driver does, in units of what the balance of
+// energy may miss: where a load changes in time and moves nothing, and where drivers move bodies, no other error says
+// so, be the force a spring to a driven wheel. Nothing is asked of drivers beside singular positions, where their loads
+// have no bound, nor where the balance tells what the only one does. In a step with a switch both estimates of order 8
+// together bound the error, as neither does alone: it is 2.9 and 3.1 times both at most if a power bends or jumps
+// anywhere; of order 5 the trapezoid rule takes the place of the other one.
 double RungeKutta::error_of_work(double h) const {
   const std::size_t usual = ErrorScale::judged(motion_.works()).size();
-  const bool of_drivers = (projects() ? energy_.leaves_drivers(motion_, switches_.any()) : switches_.any()) &&
-                          !trials_.project_stages() && !dips();
+  const bool is_told = projects() && !energy_.leaves_drivers(motion_);
+  const bool of_drivers = !is_told && !trials_.project_stages() && !dips();
+  const std::span<const double> first(stage_[0]), last(stage_[static_cast<std::size_t>(tableau().stages) - 1]);
   double largest = 0;
   for (std::size_t place = 0; place < (of_drivers ? motion_.works() : usual); ++place) {
     const std::size_t k = 2 * motion_.coordinates() + place;
@@ -106,13 +106,13 @@ double RungeKutta::error_of_work(double h) const {
       if (bends)
         error = 3 * std::hypot(error, low);
       else if (error > 0)
-        error *= error / std::sqrt(error * error + 0.01 * low * low);
+        error *= error / std::hypot(error, 0.1 * low);  // squares of powers that have hardly begun are zero
     } else if (bends) {
-      const std::size_t last = static_cast<std::size_t>(tableau().stages) - 1;
-      error = std::max(error, ErrorScale::error_of_switch(h, stage_[0][k], stage_[last][k], y_new_[k] - y_[k]));
+      error = std::max(error, ErrorScale::error_of_switch(h, first[k], last[k], y_new_[k] - y_[k]));
     }
     if (error == 0) continue;
-    largest = std::max(largest, scale_.size_of_work(error, y_[k], y_new_[k], h, motion_.equations().applied_forces()));
+    largest = std::max(largest, scale_.size_of_work(error, {h, y_[k], y_new_[k]}, motion_.equations().applied_forces(),
+                                                    motion_.qd(last)));
   }
   return largest;
 }

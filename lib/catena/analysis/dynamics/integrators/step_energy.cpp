@@ -16,6 +16,8 @@ constexpr double unexplained = 1000;
 // The least cosine between v1 and u; the largest a u, compared with v1.
 constexpr double least_cosine = 0.1, largest_change = 1e-3;
 
+constexpr std::size_t first_driver = ErrorScale::work_of_loads + 1;  // of the drivers' integrals
+
 struct StepEndEnergy {
   double kinetic = 0, potential = 0;
 };
@@ -77,9 +79,8 @@ bool StepEnergy::watches(double ratio, bool crossing) const {
 
 bool StepEnergy::tells_work(const Motion& motion) const { return tells_ == Tells::work && freedoms(motion) == 0; }
 
-bool StepEnergy::leaves_drivers(const Motion& motion, bool switches) const {
-  if (!tells_work(motion)) return switches;
-  return motion.works() > ErrorScale::work_of_loads + 2;
+bool StepEnergy::leaves_drivers(const Motion& motion) const {
+  return motion.works() > first_driver + 1 || !tells_work(motion);
 }
 
 int StepEnergy::freedoms(const Motion& motion) const {
@@ -135,7 +136,6 @@ void StepEnergy::restore_work(const Motion& motion, const BalancedEnds& step) co
   const Side from = h > 0 ? Side::after : Side::before, to = h > 0 ? Side::before : Side::after;
   const StepEndEnergy before = energy_at(motion, step.t - h, from, step.y_before);
   const StepEndEnergy after = energy_at(motion, step.t, to, step.y);
-  constexpr std::size_t first = ErrorScale::work_of_loads + 1;  // of the drivers' integrals
   const std::size_t offset = 2 * motion.coordinates();
   const std::span<const double> old = step.y_before.subspan(offset);
   const std::span<double> work = step.y.subspan(offset);
@@ -146,9 +146,13 @@ void StepEnergy::restore_work(const Motion& motion, const BalancedEnds& step) co
     return std::abs(step.error.empty() ? work[k] - old[k] : step.error[offset + k]);
   };
   double doubts = 0;
-  for (std::size_t k = first; k < work.size(); ++k) doubts += doubt(k);
-  if (!(doubts > 0)) return;
-  for (std::size_t k = first; k < work.size(); ++k) work[k] += missing * (doubt(k) / doubts);
+  for (std::size_t k = first_driver; k < work.size(); ++k) doubts += doubt(k);
+  if (doubts > 0) {
+    for (std::size_t k = first_driver; k < work.size(); ++k) work[k] += missing * (doubt(k) / doubts);
+  } else if (work.size() == first_driver + 1) {
+    const double largest = std::max({before.kinetic, std::abs(before.potential), std::abs(after.potential), weight_});
+    if (std::abs(missing) > thresholds::few_roundings * largest) work[first_driver] += missing;
+  }
 }
 
 }  // namespace catena

@@ -22,7 +22,8 @@
 //   sum dW_k = T1 - T0 + V1 - V0 + dissipated - work of loads
 //
 // What the integrals of their powers miss of it goes to the drivers in proportion to the error estimates of these, or,
-// where there are none, to their work in the step.
+// where there are none, to their work in the step; to an only one in any case, of whose power nothing may be seen at
+// the ends of a step.
 //
 // Symbols: T kinetic, V potential energy in J, M masses, v velocities, h the step in s, b_s weights of its stages, dW_k
 // work of a driver in the step. Source: apps/manual/numerics.md#singular-passages.
@@ -66,9 +67,9 @@ class StepEnergy {
   bool watches(double ratio, bool crossing) const;
   /// Whether the balance of steps, if they are projected, says what drivers do: these move all of the mechanism.
   bool tells_work(const Motion& motion) const;
-  /// Whether errors of the drivers' integrals are to bound the step: of several drivers the balance tells the sum
-  /// alone; where it tells nothing, of a step in which forces switch (RungeKutta::error_of_work).
-  bool leaves_drivers(const Motion& motion, bool switches) const;
+  /// Whether errors of the drivers' integrals are to bound the step: not where the balance tells what the only one does
+  /// (RungeKutta::error_of_work).
+  bool leaves_drivers(const Motion& motion) const;
   /// Power P at a stage, at the evaluator's place, that of y.
   void note_power(const Motion& motion, std::size_t stage, std::span<const double> y);
   /// Balances a step. False: more energy is missing than the error of the step and its rounding explain.
