@@ -116,6 +116,7 @@ class StaticSystem {
 
   KktMatrix& matrix() { return matrix_; }
   Evaluator& evaluator() { return evaluator_; }
+  const Evaluator& evaluator() const { return evaluator_; }
   const Plan& plan() const { return plan_; }
   double length() const { return length_; }  ///< what changes are compared with, m
   double extent() const { return extent_; }  ///< of the present coordinates, m: rounding grows with it

@@ -8,6 +8,7 @@
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/analysis/statics/static_attempts.hpp"
+#include "catena/analysis/statics/turning_groups.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -59,7 +60,7 @@ EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& obs
     // A loose body or an energy without a minimum is the same from every start.
     if (used == 0 && !first.ok() && first.status != Status::not_converged && first.status != Status::not_assembled)
       break;
-    if (!candidate.report.ok()) continue;
+    if (!candidate.report.ok() || turns_a_guide_over(evaluator_, start, q_)) continue;
     candidate.q = q_;
     candidate.lambda = lambda_;
     const double energy_size = std::max(std::abs(candidate.report.energy), system_.load_size() * system_.length());

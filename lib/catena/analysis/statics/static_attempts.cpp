@@ -1,6 +1,9 @@
 #include "catena/analysis/statics/static_attempts.hpp"
 
+#include <random>
+
 #include "catena/analysis/statics/solvers/static_ipopt.hpp"
+#include "catena/analysis/statics/turning_groups.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -14,11 +17,15 @@ constexpr int most_downhill_columns = 3000;
 // Displacements of angles, rad: of the first displaced start, and of those after it.
 constexpr double little = 0.1, much = 1.0;
 
-// A reproducible number in [-1, 1).
-double random_number(unsigned& seed) {
-  seed = seed * 1664525u + 1013904223u;
-  return static_cast<double>(seed >> 8) / (1 << 23) - 1;
-}
+/// Reproducible numbers in [-1, 1): of seeds that follow each other, too, the first ones have nothing in common.
+class RandomPushes {
+ public:
+  explicit RandomPushes(unsigned seed) : generator_(seed) {}
+  double operator()() { return static_cast<double>(generator_() >> 8) / (1 << 23) - 1; }
+
+ private:
+  std::mt19937 generator_;
+};
 
 }  // namespace
 
@@ -48,10 +55,20 @@ bool StaticAttempts::go_on(int trial) {
 
 void shake(const StaticSystem& system, std::vector<double>& q, unsigned seed, double angle, double place) {
   const Plan& plan = system.plan();
+  const TurningGroups groups(system.evaluator());
+  std::vector<std::optional<double>> turned(at(plan.moving));  // by the body that stands for those that turn with it
+  RandomPushes push(seed);
   for (int c = 0; c < plan.columns; ++c) {
     const int coordinate = plan.coordinate[at(c)];
-    const double size = coordinate % 3 == 2 ? angle : place * angle * system.length();
-    q[at(coordinate)] += size * random_number(seed);
+    if (coordinate % 3 != 2) {
+      q[at(coordinate)] += place * angle * system.length() * push();
+      continue;
+    }
+    const int group = groups.of(coordinate / 3);
+    if (group == TurningGroups::with_the_ground) continue;
+    std::optional<double>& turn = turned[at(group)];
+    if (!turn) turn = angle * push();
+    q[at(coordinate)] += *turn;
   }
 }
 

@@ -50,7 +50,8 @@ class StaticAttempts {
 };
 
 /// Disturbs every coordinate by a random amount: angles by at most `angle`, rad, places by `place` of that in length
-/// scales. The same seed gives the same numbers.
+/// scales. Bodies that cannot turn against each other turn together (turning_groups.hpp). The same seed gives the same
+/// numbers.
 void shake(const StaticSystem& system, std::vector<double>& q, unsigned seed, double angle, double place = 0.1);
 
 /// The start of an attempt from `start`.

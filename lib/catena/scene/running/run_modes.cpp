@@ -85,7 +85,10 @@ void differentiate(const AnalysisContext& context, Modes& analysis, const ModesR
     const bool several = found && is_double(report, k);
     std::string trouble;
     if (several)
-      trouble = fmt::format("mode {} is one of two or more with the same frequency, which has no derivative", k + 1);
+      trouble = fmt::format(
+          "mode {} is one of two or more with the same frequency, within {:.0e} of omega2: none of them has a "
+          "derivative",
+          k + 1, frequencies_apart);
     const auto why = [&](bool has_gradient) {
       if (has_gradient || !trouble.empty()) return trouble;
       return lambda ? derivatives.why() : std::string("constraints are singular at this place");
