@@ -71,7 +71,8 @@ void MeasureSet::resolve(const Model& model, const Plan& plan, const ColumnSourc
   }
   if (switches_.empty()) return;
   auto switched = std::make_unique<ColumnSet>(ColumnSet::resolve(model, plan, names, untimed));
-  (sources.timed ? columns_ : switched_columns_) = std::move(switched);
+  const bool is_driven = sources.timed && sources.analysis != "dynamics";
+  (is_driven ? columns_ : switched_columns_) = std::move(switched);
 }
 
 void MeasureSet::open_accounts(const std::vector<std::array<std::size_t, 2>>& places) {

@@ -128,8 +128,8 @@ class MeasureSet {
   std::vector<MeasureRequest> requests_;
   Breakpoints breakpoints_;
   std::unique_ptr<ColumnSet> columns_;
-  /// Without time, for derivatives: the same and, behind them, where they switch (columns/switches.hpp), which
-  /// `columns_` has itself in time; null: nothing does.
+  /// For derivatives: the same and, behind them, where they switch (columns/switches.hpp), which `columns_` has itself
+  /// in driven motions; null: nothing does.
   std::unique_ptr<ColumnSet> switched_columns_;
   std::vector<ColumnSwitch> switches_;
   std::unique_ptr<MotionSamples> samples_;

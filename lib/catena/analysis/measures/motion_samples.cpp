@@ -17,6 +17,7 @@ constexpr double no_part = MotionSamples::allowed_part * MotionSamples::allowed_
 // A misfit that halving leaves as large in both halves may be noise: that of a smooth column falls to 1/32, that of a
 // kink stays in one half alone. But it does so as well where a column swings many times in the part.
 constexpr double no_progress = 0.5;
+// A step of a method has no such swings: noise is taken for it from four halvings on, and there are twelve at most.
 
 // What the polynomial of degree eight may miss rows by, and by how much more it and the quartic miss in a part of twice
 // the length, where half of what is allowed is left for bends yet to come.
@@ -188,7 +189,8 @@ MotionSamples::Misfit MotionSamples::misfit(const Part& part) const {
   double largest = 0, kink = 0;
   for (std::size_t c = 0; c < size_.size(); ++c) {
     largest = std::max(largest, misfit_of(part, c));
-    kink = std::max(kink, kink_of(part, c));
+    // Steps of a method end where it sees forces bend, and what is dense between them has noise of its tolerance.
+    if (follows_places_) kink = std::max(kink, kink_of(part, c));
   }
   const double of_rows = misfit_of_rows(part), rows = of_rows / allowed_row_part, of_size = std::max(largest, of_rows);
   largest /= allowed_part;
@@ -205,14 +207,16 @@ std::optional<bool> MotionSamples::is_noise(const MotionPiece& piece, const Part
     if (!there) return {};
     for (std::size_t c = 0; c < size_.size(); ++c) difference[c] += third[k] * there->value[c];
   }
+  // Third differences of what is dense and smooth vanish; of noise they are up to eight times as large, or as small.
+  const double progress = no_progress / 8;
   bool misses = false, differs = false;
   const double of_rows = misfit_of_rows(part);
   for (std::size_t c = 0; c < size_.size(); ++c) {
     const double quartic_off = misfit_of(part, c), kink = kink_of(part, c), noise = std::abs(difference[c]);
     const double off = std::max(quartic_off > allowed_part ? quartic_off : 0, kink > least_kink ? kink : 0);
-    if (off > 0 && !(noise >= no_progress * off * size_[c])) return false;
+    if (off > 0 && !(noise >= progress * off * size_[c])) return false;
     misses = misses || off > 0;
-    differs = differs || (size_[c] > 0 && noise >= no_progress * of_rows * size_[c]);
+    differs = differs || (size_[c] > 0 && noise >= progress * of_rows * size_[c]);
   }
   return misses || differs;  // or rows alone are missed
 }
@@ -311,7 +315,9 @@ bool MotionSamples::cover_part(const MotionPiece& piece, const Part& part, doubl
   // What may be missed of a column's size, by so short a part.
   const double least = no_part * so_far / length;
   const bool is_told = (off.here <= 1 && off.kink <= least) || std::min(off.of_size, 1.0) <= least;
-  if (is_rounding || (!turns_far && is_told)) return take(part);
+  const double of_piece = follows_places_ ? 1 : length / (piece.to() - piece.from());
+  const bool is_short = of_piece <= std::ldexp(1, -12);
+  if (is_rounding || is_short || (!turns_far && is_told)) return take(part);
   Part first, second;
   if (!fill(piece, part.front(), part[4], first) || !fill(piece, part[4], part.back(), second)) return false;
   const auto stays = [&](const Part& half) {
@@ -319,7 +325,8 @@ bool MotionSamples::cover_part(const MotionPiece& piece, const Part& part, doubl
     return std::max(now.of_size, now.kink) > no_progress * std::max(off.of_size, off.kink);
   };
   if (!turns_far && stays(first) && stays(second)) {
-    const std::optional<bool> noise = is_noise(piece, part, least);
+    const bool of_step = of_piece <= std::ldexp(1, -4);
+    const std::optional<bool> noise = of_step ? true : follows_places_ ? is_noise(piece, part, least) : false;
     if (!noise) return false;
     if (*noise) return take(first) && take(second);
   }
