@@ -89,6 +89,45 @@ TEST(LatchedMotions, AMotionCutInTwoIsTheWholeOne) {
   EXPECT_NEAR(anew.last("b.vy", 1), 4 - g * 0.1, 1e-7);
 }
 
+// A lock that closes after two turns holds the wheel there, in the motions that follow too, with events and without.
+TEST(LatchedMotions, ALockHoldsAfterWholeTurns) {
+  const std::string lock =
+      R"({"name": "on", "when": "w.angle", "value": 12.566370614359172, "action": "engage", "element": "lock"})";
+  const TextRun run = run_text(fmt::format(R"({{"catena": 1,
+    "bodies": {{"w": {{"mass": 1, "inertia": 1, "position": [0, 0], "angular_velocity": 10}}}},
+    "constraints": [{{"type": "revolute", "i": "ground", "j": "w", "at": [0, 0]}},
+                    {{"type": "absolute_angle", "name": "lock", "i": "w", "value": 0}}],
+    "forces": [{{"type": "torque", "i": "w", "torque": 1}}],
+    "outputs": ["w.angle"],
+    "analyses": [{{"type": "dynamics", "until": 2, "every": 1, "events": [{0}]}},
+                 {{"type": "dynamics", "until": 3, "every": 1, "events": [{0},
+                   {{"name": "off", "when": "t", "value": 3.5, "action": "release", "element": "lock"}}]}},
+                 {{"type": "dynamics", "until": 4, "every": 1}},
+                 {{"type": "dynamics", "until": 6, "every": 1, "events": [{0},
+                   {{"name": "off", "when": "t", "value": 5, "action": "release", "element": "lock"}}]}}]}})",
+                                           lock));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  const double there = 4 * std::acos(-1.0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(run.last("w.angle", k), there, 1e-9) << k;
+    EXPECT_NEAR(run.column("w.angle", k).at(k == 0 ? 2 : 0), there, 1e-9) << k;
+  }
+  EXPECT_NEAR(run.last("w.angle", 3), there + 0.5, 1e-7);
+}
+
+// The same motions one after the other inside a sweep.
+TEST(LatchedMotions, ASweepHoldsWhatItsMotionsHave) {
+  const TextRun run = run_latch(fmt::format(R"({{"type": "sweep", "over": {{"h": [0.4, 0.5]}}, "of": [
+    {{"type": "dynamics", "until": 0.8, "events": [{0}]}}, {{"type": "assemble"}},
+    {{"type": "dynamics", "until": 1.5, "events": [{0}, {1}], "measures": {{"y": {{"final": "b.y"}}}}}}]}})",
+                                            on, off));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  const std::vector<double> y = run.column("y");
+  ASSERT_EQ(y.size(), 2U);
+  EXPECT_NEAR(y[0], 0.4 - g * 0.25 / 2, 1e-7);
+  EXPECT_NEAR(y[1], 0.5 - g * 0.25 / 2, 1e-7);
+}
+
 TEST(LatchedMotions, GradientsGoOnAfterTheRelease) {
   const TextRun run = run_latch(fmt::format(R"({{"type": "sensitivity", "parameters": ["h", "v"],
     "of": {{"type": "dynamics", "until": 1.5, "every": 1.5, "measures": {{"y": {{"final": "b.y"}}}},

@@ -201,5 +201,53 @@ TEST(InverseFriction, WorkWhereWhatPressesTurnsRound) {
   }
 }
 
+// An unbalanced wheel on a pin that rubs: its force m e w^2 turns round the pin and never comes near zero.
+TEST(InverseFriction, APinsForceMayTurnRoundIt) {
+  const TextRun run = run_text(R"({"catena": 1, "bodies": {"b": {"mass": 2, "inertia": 0.2, "position": [0.3, 0]}},
+    "constraints": [{"type": "revolute", "name": "J", "i": "ground", "j": "b", "at": [0, 0]}],
+    "drivers": [{"type": "absolute_angle", "name": "D", "i": "b", "value": {"polynomial": [0, 5]}}],
+    "forces": [{"type": "friction", "name": "rub", "joint": "J", "mu": 0.3, "radius": 0.1}],
+    "outputs": ["D.work"], "analyses": [{"type": "inverse_dynamics", "until": 10, "every": 1}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_TRUE(run.analysis().report.warnings.empty()) << run.analysis().report.warnings.front();
+  EXPECT_NEAR(run.last("D.work"), 0.3 * (2 * 0.3 * 25) * 0.1 * 5 * 10, 1e-11);
+}
+
+// Force and moment of a guide turn at different instants, at which the other one goes on to rub.
+TEST(InverseFriction, ForceAndMomentOfAGuideTurnOneByOne) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81],
+    "bodies": {"b": {"mass": 2, "inertia": 0.2, "position": [0, 0], "points": {"o": [0, 0]}}},
+    "constraints": [{"type": "translational", "name": "J", "i": ["ground", [0, 0]], "j": ["b", [0, 0]],
+                     "axis_i": [1, 0], "axis_j": [1, 0]}],
+    "drivers": [{"type": "displacement", "name": "D", "i": ["ground", [0, 0]], "j": ["b", [0, 0]], "axis_i": [1, 0],
+                 "value": {"polynomial": [0, 2]}}],
+    "forces": [{"type": "friction", "name": "rub", "joint": "J", "mu": 0.3, "length": 0.2},
+               {"type": "point_force", "i": "b.o", "force": [0, {"harmonic": {"amplitude": 40, "omega": 7}}]},
+               {"type": "torque", "i": "b", "torque": {"harmonic": {"amplitude": 3, "omega": 3}}}],
+    "outputs": ["D.work"], "analyses": [{"type": "inverse_dynamics", "until": 2, "every": 2}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_TRUE(run.analysis().report.warnings.empty()) << run.analysis().report.warnings.front();
+  // mu v times the integrals of |m g - F sin 7 t| and |T sin 3 t| 2 / length, over parts without a change of sign.
+  const auto integral = [](double mean, double amplitude, double omega, double from, double to) {
+    return mean * (to - from) + amplitude * (std::cos(omega * to) - std::cos(omega * from)) / omega;
+  };
+  const auto of_size = [&](double mean, double amplitude, double omega) {
+    std::vector<double> ends = {0};
+    const double arc = std::asin(mean / amplitude), pi = std::acos(-1.0);
+    for (int turn = 0; turn < 3; ++turn) {
+      for (const double angle : {arc + 2 * pi * turn, pi - arc + 2 * pi * turn}) {
+        if (angle > 0 && angle < 2 * omega) ends.push_back(angle / omega);
+      }
+    }
+    ends.push_back(2);
+    double sum = 0;
+    for (std::size_t k = 1; k < ends.size(); ++k)
+      sum += std::abs(integral(mean, amplitude, omega, ends[k - 1], ends[k]));
+    return sum;
+  };
+  const double right = 0.3 * 2 * (of_size(2 * 9.81, 40, 7) + of_size(0, 3, 3) / 0.1);
+  EXPECT_NEAR(run.last("D.work"), right, 1e-8);
+}
+
 }  // namespace
 }  // namespace catena::testing

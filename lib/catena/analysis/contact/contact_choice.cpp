@@ -61,7 +61,8 @@ Report ContactSwitch::press_joints(double t, std::span<const double> qd, const C
     }
     if (!problem.solve()) return wedged(t);
     if (change <= thresholds::sum_rounding * size) return {};
-    if (change >= before && std::isfinite(change)) part /= 2;
+    // Changes may grow for some rounds by themselves: larger parts are tried again.
+    part = change >= before && std::isfinite(change) ? part / 2 : std::min(1.0, 1.25 * part);
     before = change;
   }
   return failure(t, fmt::format("the friction of {} and the reactions that press there do not settle within {} rounds",

@@ -185,7 +185,7 @@ bool ContactPhases::misses_closed() const {
     any_sticks |= sticks(point, states_[k]);
     if (point.kind != ContactKind::rigid || !states_[k].closed) continue;
     const double unit = point.turns ? 1 : evaluator.length_scale();
-    misses |= std::abs(evaluator.measure(point.element, {}, {}).value) > thresholds::few_roundings * unit;
+    misses |= std::abs(evaluator.measure(point.element, {}, {}).value) > thresholds::carried_rounding * unit;
   }
   return any_sticks && misses;
 }

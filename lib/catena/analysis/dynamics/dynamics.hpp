@@ -190,6 +190,7 @@ class Dynamics {
     std::optional<Evaluator::TimeLimit> limit;  // while it lasts
     std::optional<Motion> motion;
     std::unique_ptr<Integrator> integrator;
+    bool all_is_driven = false;  // constraints and drivers leave no freedom
   } under_way_;
   std::shared_ptr<const LawStretches> law_stretches_;  // none where no law reads t, or steps are fixed
   StepPace pace_;

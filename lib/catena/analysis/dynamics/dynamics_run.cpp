@@ -82,6 +82,7 @@ Report Dynamics::start() {
   if ((work_.account || conserves) && options_.step == 0) work_.balance.emplace();
   row_.driver_work.assign(work_.account ? model_->elements.size() : 0, 0.0);
   under_way_.motion.emplace(equations_, work_.account ? &*work_.account : nullptr);
+  under_way_.all_is_driven = freedoms() == 0;
   if (plan_->rows == 0 && lacks_length(evaluator_)) {
     const double way = origin_.resumed ? memory_.length : way_of_motion(equations_, t_, q_, qd_, run_.grid.last());
     if (way > 0) under_way_.motion->set_length_scale(way);
@@ -217,7 +218,7 @@ Report Dynamics::step(RowObserver& observer) {
   double reach = law_stretches_ ? std::min(limit, law_stretches_->limit(t_)) : limit;
   // Where drivers move all, a law or a cable says nothing of itself in the errors of the motion: its work alone does,
   // at the stages.
-  if (work_.account && options_.step == 0 && freedoms() == 0 && under_way_.integrator->rate() > 0 &&
+  if (work_.account && options_.step == 0 && under_way_.all_is_driven && under_way_.integrator->rate() > 0 &&
       (!evaluator_.laws().empty() || under_way_.motion->switches().has_cables()))
     reach = std::min(reach, t_ + thresholds::driven_stretch / under_way_.integrator->rate());
   if (!under_way_.integrator->advance(reach)) return stuck();

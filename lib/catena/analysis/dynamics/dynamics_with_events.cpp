@@ -93,7 +93,9 @@ void DynamicsWithEvents::make_dynamics() {
 void DynamicsWithEvents::start_from(const SystemState& state) {
   if (resumed_) return;
   start_ = state;
+  held_ = state.held;
   dynamics_->start_from(state);
+  turn_values_to_bodies(held_, state);
 }
 
 SystemState DynamicsWithEvents::state() const {
@@ -101,7 +103,7 @@ SystemState DynamicsWithEvents::state() const {
   state.ropes = contacts_.turns(state);
   // After what events did last, too, and no rows of contacts that are open.
   state.released = released_by_events(*given_model_, plan_options_.released_elements);
-  state.held = held_by_events(watch_->events(), plan_options_.released_elements);
+  state.held = held_by_events(watch_->events(), plan_options_.released_elements, held_);
   // Slides of contacts are none of the given model's.
   std::erase_if(state.curves,
                 [this](const CurvePlace& place) { return at(place.element) >= given_model_->elements.size(); });
@@ -189,6 +191,7 @@ void DynamicsWithEvents::resume(const MotionMemory& memory) {
   rows_before_ = memory.rows_given;
   plan_options_.released_elements = memory.events.released;
   turned_ = memory.events.turned;
+  held_ = memory.events.held;
   jolts_ = memory.jolts;
   watch_->remember(memory.events);
   if (contacts_.any()) taken_up_ = resume_ropes(memory);
@@ -219,6 +222,7 @@ void DynamicsWithEvents::save_and_resume(std::int64_t rows_given, std::int64_t n
   memory.events = watch_->memory();
   memory.events.released = plan_options_.released_elements;
   memory.events.turned = turned_;
+  memory.events.held = held_;
   memory.jolts = jolts_;
   memory.ropes = contacts_.turns(dynamics_->state());
   memory.rope_events.clear();  // of the pause before
@@ -235,7 +239,8 @@ std::vector<double> DynamicsWithEvents::place() {
   return configuration_of(evaluator, dynamics_->state());
 }
 
-// The values of elements that were just engaged, moved by the turns that the bodies made without them.
+// The values of elements that were engaged, now or before the start, moved by the turns that the bodies made without
+// them.
 void DynamicsWithEvents::turn_values_to_bodies(std::span<const int> engaged, const SystemState& state) {
   bool any = false;
   for (const int element : engaged) {

@@ -134,7 +134,7 @@ class DynamicsWithEvents {
   };
   std::vector<Kept> kept_;
   std::unique_ptr<EventWatch> watch_;
-  std::vector<int> turned_;                     // see EventMemory
+  std::vector<int> turned_, held_;              // see EventMemory
   std::vector<std::string> inactive_;           // what is said of elements that are released before they are engaged
   std::vector<SingularPoint> singular_points_;  // of the run, in all its phases
   std::vector<Jolt> jolts_;                     // the same

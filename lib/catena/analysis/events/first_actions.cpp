@@ -28,12 +28,13 @@ FirstActions first_actions(std::span<const Event> events, const Model& model) {
   return first;
 }
 
-std::vector<int> held_by_events(std::span<const Event> events, const std::vector<int>& released) {
-  std::vector<int> held;
+std::vector<int> held_by_events(std::span<const Event> events, const std::vector<int>& released,
+                                const std::vector<int>& before) {
+  std::vector<int> held = before;
   for (const Event& event : events) {
-    if (event.action != EventAction::release && event.action != EventAction::engage) continue;
-    if (std::find(released.begin(), released.end(), event.element) == released.end()) held.push_back(event.element);
+    if (event.action == EventAction::release || event.action == EventAction::engage) held.push_back(event.element);
   }
+  std::erase_if(held, [&](int e) { return std::find(released.begin(), released.end(), e) != released.end(); });
   std::sort(held.begin(), held.end());
   held.erase(std::unique(held.begin(), held.end()), held.end());
   return held;

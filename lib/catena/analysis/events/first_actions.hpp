@@ -24,7 +24,9 @@ struct FirstActions {
 
 FirstActions first_actions(std::span<const Event> events, const Model& model);
 
-/// Of the elements that events release and engage those that hold, where these are released; ascending.
-std::vector<int> held_by_events(std::span<const Event> events, const std::vector<int>& released);
+/// Of the elements that events release and engage, and of those that were held `before`, the ones that hold where these
+/// are released; ascending.
+std::vector<int> held_by_events(std::span<const Event> events, const std::vector<int>& released,
+                                const std::vector<int>& before);
 
 }  // namespace catena

@@ -57,13 +57,20 @@ Report DrivenFriction::no_friction(double t) const {
   return report;
 }
 
-void DrivenFriction::read_pressing(std::span<const double> lambda, std::vector<double>& pressing) const {
+// As ContactLoads::joint_force, before lengths are taken: forces of a pin are one vector, force and moment of a guide
+// two numbers.
+void DrivenFriction::read_pressing(std::span<const double> lambda, std::span<const double> qd,
+                                   std::vector<Vec2<double>>& pressing) const {
   pressing.clear();
   for (const ContactPoint& joint : joints_) {
     const std::size_t row = at(evaluator_.plan().element_row[at(joint.joint)]);
-    pressing.push_back(lambda[row]);
-    if (std::isfinite(joint.half_length) || !evaluator_.plan().row_is_angle[row + 1])
-      pressing.push_back(lambda[row + 1]);
+    const double power = joint.mu * joint.radius * std::abs(evaluator_.scalar_motion(joint.slide, qd).rate);
+    if (evaluator_.plan().row_is_angle[row + 1]) {
+      pressing.push_back({power * lambda[row], 0});
+      pressing.push_back({power * lambda[row + 1] / joint.half_length, 0});
+    } else {
+      pressing.push_back({power * lambda[row], power * lambda[row + 1]});
+    }
   }
 }
 

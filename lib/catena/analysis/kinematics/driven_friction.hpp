@@ -45,9 +45,10 @@ class DrivenFriction {
   /// Power lost then.
   double dissipation() const;
   void add_remarks(std::vector<std::string>& warnings) const;
-  /// What N bends at the zero of, from multipliers: of a guide its force, and its moment if it counts; of other joints
-  /// x and y of the force.
-  void read_pressing(std::span<const double> lambda, std::vector<double>& pressing) const;
+  /// Vectors whose lengths are what friction takes, W, and bends with at their zeros: of a guide one for its force and
+  /// one for its moment, of a pin its force.
+  void read_pressing(std::span<const double> lambda, std::span<const double> qd,
+                     std::vector<Vec2<double>>& pressing) const;
 
  private:
   void begin(double t, std::span<const double> qd, std::span<double> friction);

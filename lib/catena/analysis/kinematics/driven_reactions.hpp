@@ -40,7 +40,9 @@ class DrivenReactions {
   /// Of joints with friction, by element; empty: there are none.
   std::span<const ContactLoad> friction() const { return friction_.loads(); }
   double dissipation() const { return friction_.dissipation(); }
-  void read_pressing(std::vector<double>& pressing) const { friction_.read_pressing(lambda_, pressing); }
+  void read_pressing(std::span<const double> qd, std::vector<Vec2<double>>& pressing) const {
+    friction_.read_pressing(lambda_, qd, pressing);
+  }
   /// What is to be said of the multipliers of all rows so far.
   void add_remarks(std::vector<std::string>& warnings) const;
 

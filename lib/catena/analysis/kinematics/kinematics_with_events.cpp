@@ -211,6 +211,7 @@ void KinematicsWithEvents::make_kinematics() {
 void KinematicsWithEvents::start_from(const SystemState& state) {
   start_ = state;
   kinematics_->start_from(state);
+  if (turn_values_to_bodies(state.held, state)) kinematics_->start_from(state);
 }
 
 Report KinematicsWithEvents::check_order(const TimeGrid& grid) const {
@@ -231,22 +232,26 @@ Report KinematicsWithEvents::check_order(const TimeGrid& grid) const {
   return report;
 }
 
-// Places and values of what was just engaged: whole turns first, then whether it fits.
-Report KinematicsWithEvents::engage(std::span<const int> elements) {
-  const auto residuals = [&](int element) {
-    Evaluator& evaluator = kinematics_->evaluator();
-    evaluator.set_time(end_->t);
-    return residuals_of(evaluator, configuration_of(evaluator, *end_), element);
-  };
+// The values of elements that were engaged, moved by the turns that the bodies made without them: whether any is.
+bool KinematicsWithEvents::turn_values_to_bodies(std::span<const int> elements, const SystemState& state) {
   bool turns = false;
   for (const int element : elements) {
-    const int whole = whole_turns_of(*model_, element, residuals(element));
+    Evaluator& evaluator = kinematics_->evaluator();
+    evaluator.set_time(state.t);
+    const int whole =
+        whole_turns_of(*model_, element, residuals_of(evaluator, configuration_of(evaluator, state), element));
     if (whole == 0) continue;
     turned_.resize(model_->elements.size());
     turned_[at(element)] += whole;
     turns = true;
   }
   if (turns) make_kinematics();
+  return turns;
+}
+
+// Places and values of what was just engaged: whole turns first, then whether it fits.
+Report KinematicsWithEvents::engage(std::span<const int> elements) {
+  turn_values_to_bodies(elements, *end_);
   for (const int element : elements) {
     Evaluator& evaluator = kinematics_->evaluator();
     evaluator.set_time(end_->t);
@@ -259,7 +264,8 @@ Report KinematicsWithEvents::engage(std::span<const int> elements) {
 SystemState KinematicsWithEvents::state() const {
   SystemState state = end_ ? *end_ : kinematics_->state();
   state.released = released_by_events(*given_model_, plan_options_.released_elements);
-  state.held = held_by_events(watch_->events(), plan_options_.released_elements);
+  state.held =
+      held_by_events(watch_->events(), plan_options_.released_elements, start_ ? start_->held : std::vector<int>{});
   return state;
 }
 

@@ -48,6 +48,7 @@ class KinematicsWithEvents {
   Report check_order(const TimeGrid& grid) const;
   /// Lets the events act at which the phase ended; `stop`: the one of them that ends the analysis.
   Report act(const Event*& stop);
+  bool turn_values_to_bodies(std::span<const int> elements, const SystemState& state);
   Report engage(std::span<const int> elements);
 
   std::shared_ptr<const Model> given_model_, model_;  // model_: with values moved by whole turns

@@ -16,6 +16,11 @@ namespace catena {
 
 namespace {
 
+bool has_breakpoint(const Model& model, double t) {
+  const auto breaks = [t](const TimeFunction<double>& function) { return is_breakpoint(function, t); };
+  return std::any_of(model.functions.begin(), model.functions.end(), breaks);
+}
+
 /// Which way joints with friction slip, at the evaluator's configuration; of smoothed friction also whether tanh is
 /// nearly straight (below vs), bends (below 4 vs) or is 1 to 7e-4 and less.
 std::vector<int> ways_of_slips(const Evaluator& evaluator, std::span<const double> qd) {
@@ -53,8 +58,7 @@ double Kinematics::stretch_length(double limit) const {
 
 // The powers at an end of a stretch as they are in it: functions of time, and with them velocities, may jump there.
 void Kinematics::see_end_of_stretch(bool first, Side inside) {
-  const auto breaks = [&](const TimeFunction<double>& function) { return is_breakpoint(function, now_.t); };
-  const bool jumps = std::any_of(model_->functions.begin(), model_->functions.end(), breaks);
+  const bool jumps = has_breakpoint(*model_, now_.t);
   if (inside == Side::after || !jumps || now_.on_bridge) return work_.see_end(first, now_.qd);
   std::vector<double> qd(now_.qd);
   evaluator_.set_time(now_.t, inside);
@@ -64,8 +68,9 @@ void Kinematics::see_end_of_stretch(bool first, Side inside) {
 }
 
 // One stretch further, to t: the powers inside, then the rates there. `error`: estimate of that of the sums, J. Where
-// friction reverses, or what presses does, what it takes bends, and what the driver gives with it, so that the gap of
-// energies does not show it: such a stretch counts as wrong by the largest loss in it times its length.
+// friction reverses, or what presses comes through zero, what it takes bends, and what the driver gives with it, so
+// that the gap of energies does not show it: such a stretch counts as wrong by the largest power that bends times its
+// length.
 Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::string>& warnings) {
   const double from = now_.t;
   const bool rubs = !reactions_.friction().empty();
@@ -87,7 +92,7 @@ Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::stri
         visit(from + (t - from) * WorkSum::places[k], {.velocity = true, .acceleration = true, .multipliers = true});
     if (!moved.ok()) return moved;
     work_.add_point(k, t - from, now_.qd, reactions_.multipliers(), reactions_.dissipation());
-    if (rubs) reactions_.read_pressing(work_.pressing(1 + k));
+    if (rubs) reactions_.read_pressing(now_.qd, work_.pressing(1 + k));
     most_lost = std::max(most_lost, reactions_.dissipation());
   }
   if (Report moved = visit(t, {.velocity = true, .acceleration = true}); !moved.ok()) return moved;
@@ -95,15 +100,16 @@ Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::stri
   error = work_.stretch_error(t - from, snapshot());
   if (!rubs) return {};
   const std::vector<int> ways_there = ways_of_slips(evaluator_, now_.qd);
-  std::vector<double>& pressing = work_.pressing(WorkSum::places.size() + 1);
+  std::vector<Vec2<double>>& pressing = work_.pressing(WorkSum::places.size() + 1);
   pressing.clear();
   const bool rests = std::find(ways_there.begin(), ways_there.end(), 0) != ways_there.end();
-  if (!rests && !Breakpoints(model_->functions).contain(t)) {
+  if (!rests && stretch_.empty() && !has_breakpoint(*model_, t)) {
     if (Report solved = find_rates({.velocity = true, .acceleration = true, .multipliers = true}); !solved.ok())
       return solved;
-    reactions_.read_pressing(pressing);
+    reactions_.read_pressing(now_.qd, pressing);
   }
-  if (ways_there != ways || work_.pressing_turns()) error = std::max(error, most_lost * std::abs(t - from));
+  const double bends = ways_there != ways ? most_lost : work_.turning_power();
+  error = std::max(error, bends * std::abs(t - from));
   return {};
 }
 

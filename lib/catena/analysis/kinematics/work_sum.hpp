@@ -53,8 +53,8 @@ class WorkSum {
   void add_point(std::size_t point, double span, std::span<const double> qd, std::span<const double> lambda,
                  double lost);
   /// At a place of the stretch, 0 and 5 its ends; see PowerSamples.
-  std::vector<double>& pressing(std::size_t place) { return samples_.pressing(place); }
-  bool pressing_turns() const { return samples_.pressing_turns(); }
+  std::vector<Vec2<double>>& pressing(std::size_t place) { return samples_.pressing(place); }
+  double turning_power() const { return samples_.turning_power(); }
   /// Estimate of the error, J, of the stretch that ends with this snapshot.
   double stretch_error(double span, const Snapshot& end) const;
   /// Whether a law may switch in the stretch, which is longer than such stretches may be.

@@ -261,9 +261,9 @@ bool MotionSamples::fill(const MotionPiece& piece, const MotionSample& a, const 
     const std::optional<Snapshot> there = by_values ? std::nullopt : piece.stretch.at(t[k]);
     std::optional<MotionSample> sample = by_values ? take_values(t[k]) : std::nullopt;
     if (there) {
-      const double unit = follows_places_ ? 1 / there->evaluator.length_scale() : 0;
+      const double unit = 1 / there->evaluator.length_scale();
       sample = take_one(*there, always_);
-      sample->pace = pace_of(there->qd, unit);
+      sample->pace = follows_places_ ? pace_of(there->qd, unit) : 0;
       // Without velocities by the way from the sample before.
       if (follows_places_ && there->qd.empty()) {
         for (std::size_t c = 0; c < change.size(); ++c) change[c] = (there->q[c] - change[c]) / (t[k] - t[k - 1]);

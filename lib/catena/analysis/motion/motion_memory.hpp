@@ -47,6 +47,7 @@ struct EventMemory {
   std::vector<int> sides;     ///< by event: see EventWatch
   std::vector<double> largest;
   std::vector<EventRecord> records;
+  std::vector<int> held{};  ///< what events of motions before have left held: SystemState::held
 };
 
 /// A rope met a pulley, or left it.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -17,8 +18,10 @@ namespace {
 // Starts for every equilibrium wanted, and for two more.
 constexpr int starts_each = 15;
 // Displacement of places as a part of that of angles times the length scale. Where bodies turn angles lead in the first
-// half of the starts; angles may be held, and places what sets equilibria apart.
+// half of the starts; angles may be held, and places what sets equilibria apart. Springs may reach further than the
+// length scale, which is that of bodies: places are displaced by up to eight times as much, in turn.
 constexpr double shaken_places = 0.5, shaken_beside_angles = 0.1;
+constexpr std::array<double, 4> reaches{1, 2, 4, 8};
 // Places closer than this, in extents or rad (whole turns aside), are the same, if their energies are.
 constexpr double same_place = thresholds::same_value, same_energy = 1e-9;
 
@@ -51,7 +54,8 @@ EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& obs
     solved_ = false;
     // In turn: close to the start, far from it, and in between.
     constexpr double angles[] = {std::numbers::pi, 0.3, 1.0};
-    const double place = turns && 2 * used < starts ? shaken_beside_angles : shaken_places;
+    const double reach = reaches[at(used / 3) % reaches.size()];
+    const double place = turns && 2 * used < starts ? shaken_beside_angles : shaken_places * reach;
     if (used > 0) shake(system_, q_, static_cast<unsigned>(used), angles[at(used % 3)], place);
     Candidate candidate;
     candidate.report = solve();

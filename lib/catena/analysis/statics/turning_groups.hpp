@@ -3,8 +3,9 @@
 //   phi_j - phi_i = constant       in every configuration that motion can reach
 //
 // A guide's equation is the sine of the angle between its axes, which a body that is turned over by half a turn meets
-// as well; no motion leads there. Random starts therefore turn such bodies together, and what is found with a guide
-// turned over is no place of rest of the same mechanism. Linear in the number of elements. Angles in rad.
+// as well; no motion leads there. Random starts therefore turn such bodies together. Of several equilibria none is kept
+// that has a guide turned over; the only one of a search from the given start lies near it and is not looked at. Linear
+// in the number of elements. Angles in rad.
 #pragma once
 
 #include <span>

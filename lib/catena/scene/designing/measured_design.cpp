@@ -39,7 +39,7 @@ std::string run_once(const AnalysisContext& outer, const AnalysisTask& task, std
   if (task.has("parameter"))
     context.parameter_name = outer.models->names().all()[static_cast<std::size_t>(task.word("parameter"))];
   try {
-    analysis_function(task.type())(context, result);
+    run_analysis(context, result);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "catena/analysis/events/first_actions.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/assembly/design/adjoint_mechanism.hpp"
@@ -50,13 +51,24 @@ Report refuse(std::string message) {
   return report;
 }
 
-}  // namespace
-
+/// The function that runs an analysis of this type; nullptr if none does.
 AnalysisFunction analysis_function(std::string_view type) {
   for (const Runner& entry : entries) {
     if (entry.type == type) return entry.run;
   }
   return nullptr;
+}
+
+}  // namespace
+
+void run_analysis(AnalysisContext& context, AnalysisResult& result) {
+  const std::vector<int> before = context.task.from_initial ? std::vector<int>() : context.state.held;
+  analysis_function(context.task.type())(context, result);
+  // One that has others inside has run these, and each of them has done so.
+  if (!context.task.of.empty()) return;
+  std::vector<int>& held = context.state.held;
+  held.insert(held.end(), before.begin(), before.end());
+  held = held_by_events({}, context.state.released, held);
 }
 
 std::shared_ptr<const Model> model_at(const AnalysisContext& context, int parameter, double value) {

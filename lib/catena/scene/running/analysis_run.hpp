@@ -103,8 +103,9 @@ void run_sensitivity(AnalysisContext& context, AnalysisResult& result);
 void run_optimise(AnalysisContext& context, AnalysisResult& result);
 void run_sweep(AnalysisContext& context, AnalysisResult& result);
 
-/// The function that runs an analysis of this type; nullptr if none does.
-AnalysisFunction analysis_function(std::string_view type);
+/// Runs the analysis of the context's task. What events of motions before have engaged stays held after it, also where
+/// it has no events itself.
+void run_analysis(AnalysisContext& context, AnalysisResult& result);
 
 /// The instants at which the task wants rows, or nothing, with the report refused: before the present time, or outside
 /// the table of a function of time.

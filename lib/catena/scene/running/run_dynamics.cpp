@@ -340,8 +340,10 @@ void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
 
 void DynamicsTask::run() {
   if (const std::string why = conflict(); !why.empty()) return refuse(result_, why);
-  if (context_.checkpoint && context_.checkpoint->restart)
+  if (context_.checkpoint && context_.checkpoint->restart) {
     context_.state = {context_.checkpoint->restart->begin, {}, {}};
+    context_.state.held = context_.checkpoint->restart->motion.events.held;
+  }
   grid_ = time_grid(context_, result_.report);
   if (!grid_) return;
   std::optional<RopeWaysAt> ways;
@@ -373,7 +375,8 @@ void DynamicsTask::run_on() {
   if (estimates_) used_options_ = finer_options(options_);
   if (context_.design) used_options_.may_turn_implicit = false;
   if (context_.design && !estimates_ && may_have_elastic_gaps(*model_) && passes_kinks()) follow_kinks();
-  const bool in_common = !context_.task.events.empty() || context_.checkpoint || follows_ropes();
+  const bool acts = !context_.task.events.empty() || !context_.state.held.empty();
+  const bool in_common = acts || context_.checkpoint || follows_ropes();
   // A fixed step is the same for all; two runs that are compared must be divided alike.
   const bool looked_at = context_.design || !context_.task.measures.empty();
   // What is released is told by its number among all.

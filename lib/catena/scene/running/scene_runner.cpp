@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iterator>
 
 #include "catena/analysis/run/name_list.hpp"
 #include "catena/scene/models/scene_saving.hpp"
@@ -125,18 +124,9 @@ SceneSetup::NamedValues SceneRun::changed_parameters(const AnalysisTask& task) {
   return changed;
 }
 
-/// Whether what an analysis does begins with all that the scene has: itself, or the one inside it.
+/// Whether what an analysis does begins with all that the scene has: itself, or the first one inside it.
 bool begins_anew(const AnalysisTask& task) {
-  return task.from_initial || std::any_of(task.of.begin(), task.of.end(), begins_anew);
-}
-
-/// What events of motions before have engaged holds on, also where an analysis without events lies between.
-void keep_held(const std::vector<int>& before, SystemState& state) {
-  std::vector<int> held;
-  std::set_union(before.begin(), before.end(), state.held.begin(), state.held.end(), std::back_inserter(held));
-  std::erase_if(held,
-                [&](int element) { return std::binary_search(state.released.begin(), state.released.end(), element); });
-  state.held = std::move(held);
+  return task.from_initial || (!task.of.empty() && begins_anew(task.of.front()));
 }
 
 /// What does not hold from the start, since an analysis before has left it so, and no event of this one engages.
@@ -200,9 +190,8 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
       options_.progress({task.type(), number, static_cast<int>(setup_.tasks().size()), fraction});
     };
   }
-  const std::vector<int> released = state.released, held = begins_anew(task) ? std::vector<int>{} : state.held;
+  const std::vector<int> released = state.released;
   run_in(context, result);
-  keep_held(held, state);
   tell_of_released(*context.model, released, task, result.report);
   if (result.report.ok() && has_digits(task) && !asks_for_digits(task))
     result.fields.push_back({"digits_note", std::string("no digits are claimed: they were not asked for")});
@@ -212,7 +201,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
 
 void SceneRun::run_in(AnalysisContext& context, AnalysisResult& result) {
   try {
-    analysis_function(context.task.type())(context, result);
+    run_analysis(context, result);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

@@ -25,7 +25,7 @@ constexpr std::array<std::array<double, PowerSamples::places>, 4> polynomials = 
 
 void PowerSamples::begin(const Evaluator& evaluator) {
   laws_.begin(evaluator);
-  for (std::vector<double>& there : pressing_) there.clear();
+  for (std::vector<Vec2<double>>& there : pressing_) there.clear();
 }
 
 void PowerSamples::take(std::size_t place, double dissipated, double supplied, std::span<const double> qd) {
@@ -48,19 +48,25 @@ double PowerSamples::error(double span) const {
   return largest;
 }
 
-bool PowerSamples::pressing_turns() const {
+double PowerSamples::turning_power() const {
+  double all = 0;
   for (std::size_t k = 0; k < pressing_[1].size(); ++k) {
     std::array<double, places> t{}, v{};
     std::size_t known = 0;
+    Vec2<double> start{};
+    double largest = 0;
     for (std::size_t place = 0; place < places; ++place) {
       if (pressing_[place].empty()) continue;
+      const Vec2<double>& p = pressing_[place][k];
+      if (dot(start, start) == 0) start = p;
+      largest = std::max(largest, std::hypot(p.x, p.y));
       t[known] = place_in_stretch[place];
-      v[known++] = pressing_[place][k];
+      v[known++] = dot(start, p);
     }
     if (LawSwitches::may_switch(std::span<const double>(t).first(known), std::span<const double>(v).first(known)))
-      return true;
+      all += largest;
   }
-  return false;
+  return all;
 }
 
 bool PowerSamples::may_switch() const {

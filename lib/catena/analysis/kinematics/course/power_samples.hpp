@@ -10,9 +10,11 @@
 // top. Those of a power that bends or jumps do not. Over stretches of 0.2 and less this estimate was 290 times the
 // error for powers of two periods a turn; 0.04 % of 40,000 kinks had ten times more, none above 2e-9 of the power.
 //
-// Friction is mu N, and N = |n| bends where a guide's force n turns: what it takes, drivers give, and the gap of
-// energies stays. Where n, or what else N is made of, comes through zero the stretch counts as not smooth. At its ends
-// n is not known where functions of time jump, or a joint rests.
+// Friction is mu N, and N = |n| bends where a guide's force n, or its moment, turns: what it takes, drivers give, and
+// the gap of energies stays. So it does where a pin's force comes through zero, though not where that turns round the
+// pin. Each of them, times the slip, is a power p as a vector, |p| of which is lost; where p comes through zero along
+// its direction at the start of a stretch of length h, the sum misses up to h max |p|, a part that falls with h^2. At
+// the ends of a stretch p is not known where functions of time jump, or a joint rests.
 //
 // A pulse between two places is not seen at all. Where a law compares what changes its sign in the stretch, or comes
 // near to zero in between, the stretch counts as not smooth: run/law_switches.hpp.
@@ -41,10 +43,10 @@ class PowerSamples {
   void begin(const Evaluator& evaluator);
   /// At the evaluator's configuration and time, W.
   void take(std::size_t place, double dissipated, double supplied, std::span<const double> qd);
-  /// What the power of friction bends at the zeros of there, to be filled in; empty: not known.
-  std::vector<double>& pressing(std::size_t place) { return pressing_[place]; }
-  /// Whether some of it comes through zero, or near to it.
-  bool pressing_turns() const;
+  /// Vectors there whose lengths are powers of friction, W, to be filled in; empty: not known.
+  std::vector<Vec2<double>>& pressing(std::size_t place) { return pressing_[place]; }
+  /// The largest power of those that come through zero, or near to it, in all, W.
+  double turning_power() const;
   /// The next stretch begins where this one ends.
   void go_on() { pressing_.front() = pressing_.back(); }
   /// Estimate of the error, J, of the two integrals over a stretch of this length, s.
@@ -56,7 +58,7 @@ class PowerSamples {
   LawSwitches laws_;
   std::array<Samples, 2> power_{};
   std::array<std::vector<double>, places> differences_;  // of all comparisons of these laws
-  std::array<std::vector<double>, places> pressing_;
+  std::array<std::vector<Vec2<double>>, places> pressing_;
 };
 
 }  // namespace catena
