@@ -7,13 +7,13 @@
 // samples have of polynomials of degree seven and eight is then a tenth of what the quartic misses, in place of a
 // hundredth and less, and such a part is halved on. Halving ends where less than 1e-11 of the whole integral is at
 // stake, and where it meets nothing but rounding, which does not become less between instants that are a millionth of
-// the part apart. However smooth the samples of a driven motion seem, a part in which a body turns further than 0.2 rad between two of
-// them, or, with rows inside, which are foretold as well, five times as far between these, is halved: rows may be many
-// turns apart. Source: R. Piessens et al., QUADPACK (1983), for the rule.
+// the part apart. However smooth the samples of a driven motion seem, a part in which a body turns further than 0.2 rad
+// between two of them, or, with rows inside, which are foretold as well, five times as far between these, is halved:
+// rows may be many turns apart. Source: R. Piessens et al., QUADPACK (1983), for the rule.
 //
 // Columns come with what they switch by, as abs(v) does where v passes zero: parts end there (switching.hpp), for
-// derivatives, which jump, and for values of driven motions; of a motion under forces steps end where these bend. Where a switch stays at zero, and its derivative does not, those of the
-// column's two branches differ: it has none.
+// derivatives, which jump, and for values of driven motions; of a motion under forces steps end where these bend. Where
+// a switch stays at zero, and its derivative does not, those of the column's two branches differ: it has none.
 //
 // Where a motion can be looked at anywhere, rows need not bound the stretches: pace() says how long the next one may be
 // by what the last one showed. Columns at the rows in between are known, and the polynomial through all nine samples
