@@ -115,6 +115,22 @@ TEST(LatchedMotions, ALockHoldsAfterWholeTurns) {
   EXPECT_NEAR(run.last("w.angle", 3), there + 0.5, 1e-7);
 }
 
+// So does a driver that hands over to a lock, in motions that are driven.
+TEST(LatchedMotions, ALockHoldsDrivenMotionsAfterWholeTurns) {
+  const TextRun run = run_text(R"({"catena": 1, "bodies": {"w": {"position": [0, 0]}},
+    "constraints": [{"type": "revolute", "i": "ground", "j": "w", "at": [0, 0]},
+                    {"type": "absolute_angle", "name": "lock", "i": "w", "value": 0}],
+    "drivers": [{"type": "absolute_angle", "name": "turn", "i": "w", "value": {"polynomial": [0, 7]}}],
+    "outputs": ["w.angle"],
+    "analyses": [{"type": "kinematics", "until": 2, "every": 1, "events": [
+      {"name": "off", "when": "w.angle", "value": 12.566370614359172, "action": "release", "element": "turn"},
+      {"name": "on", "when": "w.angle", "value": 12.566370614359172, "action": "engage", "element": "lock"}]},
+     {"type": "kinematics", "until": 3, "every": 0.5}, {"type": "inverse_dynamics", "at": 3.5}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(run.last("w.angle", k), 4 * std::acos(-1.0), 1e-9) << k;
+  EXPECT_NEAR(run.first("w.angle", 1), 4 * std::acos(-1.0), 1e-9);
+}
+
 // The same motions one after the other inside a sweep.
 TEST(LatchedMotions, ASweepHoldsWhatItsMotionsHave) {
   const TextRun run = run_latch(fmt::format(R"({{"type": "sweep", "over": {{"h": [0.4, 0.5]}}, "of": [

@@ -224,6 +224,14 @@ std::string obstacle_for_ropes(const AnalysisContext& context) {
   return looks_between ? "measures of what is between rows do not go on: end the analysis before" : "";
 }
 
+bool is_forwards(const TimeGrid& grid, double t) {
+  for (std::int64_t k = 0; k < grid.size(); ++k) {
+    if (grid[k] < t) return false;
+    t = grid[k];
+  }
+  return true;
+}
+
 void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics) {
   const AnalysisTask& task = context.task;
   if (const std::string why = conflict(context, inverse_dynamics); !why.empty()) return refuse(result, why);
@@ -252,7 +260,9 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
       return refuse(result, why);
     return run_of_least_velocity(context, result, *grid, plan, sources, ways, taut);
   }
-  if (!task.events.empty()) return run_with_events(context, result, *grid, options, sources, ways, taut);
+  // What events of motions before have engaged may hold whole turns away from its value.
+  const bool goes_on = !context.state.held.empty() && is_forwards(*grid, context.state.t);
+  if (goes_on || !task.events.empty()) return run_with_events(context, result, *grid, options, sources, ways, taut);
   Kinematics analysis(context.model, plan, options);
   std::optional<KinematicLook> look, drawn;
   const auto prepare = [&](AnalysisRows& rows) {
