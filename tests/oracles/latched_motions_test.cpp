@@ -156,6 +156,35 @@ TEST(LatchedMotions, GradientsGoOnAfterTheRelease) {
   EXPECT_NEAR(gradient[1], 0, 1e-7);
 }
 
+// A mass on a spring that is caught at h and let go at 1: y = h cos(w (t - 1)) from then on, w^2 = k / m, whatever the
+// speed was. The event and the constraint have the same value: nothing opens where the other parameters move the
+// instant.
+TEST(LatchedMotions, GradientsOfASpringGoOnAfterTheRelease) {
+  expect_no_fault(1, size_of_test(12u, 4u), [](unsigned seed) -> std::string {
+    RandomNumbers random(seed);
+    const double m = random(0.5, 2), k = random(10, 40), speed = random(1.5, 3), w = std::sqrt(k / m);
+    const double h = speed / w * random(0.2, 0.8), later = 0.7, phase = w * later;
+    const TextRun run = run_text(fmt::format(R"({{"catena": 1,
+      "parameters": {{"m": {}, "k": {}, "h": {}, "v": {}}},
+      "bodies": {{"b": {{"mass": "m", "particle": true, "position": [0, 0], "velocity": [0, "v"]}}}},
+      "constraints": [{{"type": "absolute_x", "i": "b", "value": 0}},
+                      {{"type": "absolute_y", "name": "latch", "i": "b", "value": "h"}}],
+      "forces": [{{"type": "spring_damper", "i": "ground", "j": "b", "k": "k", "length": 0}}],
+      "analyses": [{{"type": "sensitivity", "parameters": ["m", "k", "h", "v"],
+        "of": {{"type": "dynamics", "tolerance": 1e-10, "until": {}, "every": 1, "events": [{}, {}],
+                "measures": {{"y": {{"final": "b.y"}}}}}}}}]}})",
+                                             m, k, h, speed, 1 + later, on, off));
+    if (run.outcome.exit_code != 0) return run.outcome.error_text + run.analysis().report.message;
+    const std::vector<double>& found = run.analysis().measures.at(0).gradient;
+    const double by_w = -h * later * std::sin(phase);
+    const double right[] = {-by_w * w / (2 * m), by_w * w / (2 * k), std::cos(phase), 0};
+    for (std::size_t p = 0; p < 4; ++p) {
+      if (!(std::abs(found.at(p) - right[p]) < 1e-7)) return fmt::format("by {}: {}, not {}", p, found[p], right[p]);
+    }
+    return {};
+  });
+}
+
 // What lies on the floor at the watched height has not been below it when it is kicked up.
 TEST(LatchedMotions, WhatLiesAtItsValueHasNotPassedIt) {
   for (const char* direction : {"up", "any"}) {

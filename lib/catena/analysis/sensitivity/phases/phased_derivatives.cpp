@@ -137,7 +137,8 @@ double PhasedDerivatives::rounding(std::size_t k, std::size_t p) const {
   return thresholds::solved * length_scale_ / size;
 }
 
-// A row that begins to hold must be met whatever the parameters are: else another motion begins there.
+// A row that begins to hold must be met whatever the parameters are: else another motion begins there. Where the
+// instant moves with them the place may not: what is left of it is as wrong as the place was at the instant before.
 void PhasedDerivatives::check_rows(std::size_t k, double t, bool starts) {
   Group& group = groups()[k];
   Track& track = tracks_[k];
@@ -145,8 +146,10 @@ void PhasedDerivatives::check_rows(std::size_t k, double t, bool starts) {
   group.mechanism.rows(group.rows);
   const std::vector<char> met = starts ? always_ : std::vector<char>{};
   for (std::size_t p = 0; p < at(group.count); ++p) {
-    const int row =
-        equations_->row_not_met(group.rows, track.anchor, q(track.end), qd(track.end), p, rounding(k, p), met);
+    double moved = 0;
+    for (std::size_t c = 0; c < n_ && !starts; ++c) moved = std::max(moved, std::abs(track.before[c].d[p]));
+    const double none = rounding(k, p) + thresholds::same_value * moved;
+    const int row = equations_->row_not_met(group.rows, track.anchor, q(track.end), qd(track.end), p, none, met);
     if (row < 0) continue;
     if (lost_.empty())
       lost_ = fmt::format(
