@@ -153,5 +153,21 @@ TEST(FarRows, TheWayOfASliderOverRandomTurns) {
   }
 }
 
+// The same in lanes, where designs have rows of their own: T exp(-k) I_0(k), the mean of exp(-k (1 - cos)) over turns.
+TEST(FarRows, OfASweepInLanes) {
+  const TextRun run = run_text(R"_({"catena": 1, "parameters": {"w": 1},
+    "bodies": {"b": {"position": [0, 0], "points": {"e": [0.3, 0]}}},
+    "constraints": [{"type": "revolute", "i": "ground", "j": "b", "at": [0, 0]}],
+    "drivers": [{"type": "absolute_angle", "i": "b", "value": {"polynomial": [0, "w"]}}],
+    "analyses": [{"type": "sweep", "over": {"w": [0.9, 1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6]},
+      "of": {"type": "kinematics", "until": "=20*pi", "every": "=2*pi",
+             "measures": {"m": {"integral": "=exp(-300*(1 - b.e.x/0.3))"}}}}]})_");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  const std::vector<double> found = run.column("m");
+  ASSERT_EQ(found.size(), 8U);
+  const double right = 20 * pi * std::exp(-300.0) * std::cyl_bessel_i(0.0, 300.0);
+  for (const double m : found) EXPECT_NEAR(m, right, 1e-9);
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -126,12 +126,22 @@ std::optional<LaneLook::Place> LaneLook::find(double t) {
   return place;
 }
 
-bool LaneLook::values(double t, std::span<double> out) {
+double LaneLook::pace_of(const double* qd, int lane) const {
+  const double length_scale = evaluator_.length_scale();
+  double pace = 0;
+  for (int n = 0; n < solver_.coordinates(); ++n) {
+    const double rate = std::abs(qd[lane_count * n + lane]);
+    pace = std::max(pace, n % 3 == 2 ? rate : rate / length_scale);
+  }
+  return std::isfinite(pace) ? pace : 0;
+}
+
+std::optional<double> LaneLook::values(double t, std::span<double> out) {
   const std::optional<Place> place = find(t);
-  if (!place) return false;
+  if (!place) return {};
   if (place->row < 0) {
     for (std::size_t k = 0; k < out.size(); ++k) out[k] = columns_->value(k, place->lane);
-    return true;
+    return pace_of(seen_.qd.data(), place->lane);
   }
   const int row = place->row, lane = motion_lane_;
   std::array<double, lane_count> instant{};
@@ -139,7 +149,7 @@ bool LaneLook::values(double t, std::span<double> out) {
   row_columns_->evaluate({lane, lane + 1, instant.data(), motion_->q(row), motion_->qd(row), motion_->qdd(row),
                           motion_->turned(row), motion_->lambda(row)});
   for (std::size_t k = 0; k < out.size(); ++k) out[k] = row_columns_->value(k, lane);
-  return true;
+  return pace_of(motion_->qd(row), lane);
 }
 
 Snapshot LaneLook::show(double t, double residual) {

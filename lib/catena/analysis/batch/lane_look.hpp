@@ -33,8 +33,9 @@ class LaneLook {
   void follow(const LaneMotion& motion, int lane, const Model& model, std::span<const double> instants);
   /// The mechanism at an instant of the motion, valid until the next call; nothing where it is lost.
   std::optional<Snapshot> at(double t);
-  /// Its columns there, without a snapshot; false where it is lost.
-  bool values(double t, std::span<double> out);
+  /// Its columns there, without a snapshot, and its pace: how fast bodies turn, rad/s, and move, in length scales;
+  /// nothing where it is lost.
+  std::optional<double> values(double t, std::span<double> out);
   /// Instants that will be asked for, at most lane_count.
   void expect(std::span<const double> instants);
   bool lost() const { return lost_; }
@@ -47,6 +48,7 @@ class LaneLook {
   std::optional<Place> find(double t);
   std::optional<Place> find_seen(double t);
   bool row_at(double t);
+  double pace_of(const double* qd, int lane) const;
   void foretell(int lane, double t);
   bool is_sound(int lane) const;
   Snapshot show(double t, double residual);

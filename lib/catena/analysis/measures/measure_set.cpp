@@ -39,8 +39,8 @@ MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model,
     : run_(run), requests_(std::move(requests)), breakpoints_(model.functions) {
   std::erase_if(requests_, [](const MeasureRequest& request) { return request.kind == MeasureKind::field; });
   if (requests_.empty()) return;
-  resolve(model, plan, sources);
   is_driven_ = sources.analysis != "dynamics";
+  resolve(model, plan, sources);
   for (const MeasureRequest& request : requests_) {
     if (needs_time(request.kind) && !sources.timed)
       throw std::invalid_argument(
@@ -71,8 +71,7 @@ void MeasureSet::resolve(const Model& model, const Plan& plan, const ColumnSourc
   }
   if (switches_.empty()) return;
   auto switched = std::make_unique<ColumnSet>(ColumnSet::resolve(model, plan, names, untimed));
-  const bool is_driven = sources.timed && sources.analysis != "dynamics";
-  (is_driven ? columns_ : switched_columns_) = std::move(switched);
+  (sources.timed && is_driven_ ? columns_ : switched_columns_) = std::move(switched);
 }
 
 void MeasureSet::open_accounts(const std::vector<std::array<std::size_t, 2>>& places) {

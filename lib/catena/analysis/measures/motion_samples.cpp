@@ -17,7 +17,8 @@ constexpr double no_part = MotionSamples::allowed_part * MotionSamples::allowed_
 // A misfit that halving leaves as large in both halves may be noise: that of a smooth column falls to 1/32, that of a
 // kink stays in one half alone. But it does so as well where a column swings many times in the part.
 constexpr double no_progress = 0.5;
-// A step of a method has no such swings: noise is taken for it from four halvings on, and there are twelve at most.
+// A step of a method has no such swings: from this part of it on what stays is noise, and shorter parts are not made.
+constexpr double noisy_part_of_step = 0x1p-4, shortest_part_of_step = 0x1p-12;
 
 // What the polynomial of degree eight may miss rows by, and by how much more it and the quartic miss in a part of twice
 // the length, where half of what is allowed is left for bends yet to come.
@@ -38,11 +39,11 @@ constexpr double falls_to = 0.0125;
 const auto quartic = sample_places::foretelling_weights();
 const auto highest = sample_places::highest_weights();
 
-/// How fast bodies with these rates turn, and move, in such units.
-double pace_of(std::span<const double> rates, double unit) {
+/// How fast bodies with these rates turn, and move, in length scales.
+double pace_of(std::span<const double> rates, double length_scale) {
   double pace = 0;
   for (std::size_t k = 0; k + 2 < rates.size(); k += 3) {
-    const double shift = unit * std::max(std::abs(rates[k]), std::abs(rates[k + 1]));
+    const double shift = std::max(std::abs(rates[k]), std::abs(rates[k + 1])) / length_scale;
     pace = std::max({pace, shift, std::abs(rates[k + 2])});
   }
   return std::isfinite(pace) ? pace : 0;
@@ -74,7 +75,9 @@ MotionSample MotionSamples::take_one(const Snapshot& snapshot, bool with_derivat
 
 std::optional<MotionSample> MotionSamples::take_values(double t) const {
   std::optional<MotionSample> sample(MotionSample{t, std::vector<double>(columns_.size()), {}, {}, 0, {}});
-  if (!values_(t, sample->value)) sample.reset();
+  const std::optional<double> pace = values_(t, sample->value);
+  if (!pace) return {};
+  if (follows_places_) sample->pace = *pace;
   return sample;
 }
 
@@ -255,20 +258,20 @@ bool MotionSamples::fill(const MotionPiece& piece, const MotionSample& a, const 
   for (std::size_t k = 0; k < sample_places::places.size(); ++k)
     t[k] = a.t + (b.t - a.t) * (1 + sample_places::places[k]) / 2;
   piece.stretch.announce(t);
-  const bool by_values = values_ && !always_;
-  std::vector<double> change;
+  std::vector<double> before, change;  // places at the sample before, and since then, where velocities are not known
   for (std::size_t k = 0; k < sample_places::places.size(); ++k) {
-    const std::optional<Snapshot> there = by_values ? std::nullopt : piece.stretch.at(t[k]);
-    std::optional<MotionSample> sample = by_values ? take_values(t[k]) : std::nullopt;
-    if (there) {
-      const double unit = 1 / there->evaluator.length_scale();
+    std::optional<MotionSample> sample;
+    if (values_ && !always_) {
+      sample = take_values(t[k]);
+    } else if (const std::optional<Snapshot> there = piece.stretch.at(t[k])) {
       sample = take_one(*there, always_);
-      sample->pace = follows_places_ ? pace_of(there->qd, unit) : 0;
-      // Without velocities by the way from the sample before.
+      const double length_scale = there->evaluator.length_scale();
+      if (follows_places_ && !there->qd.empty()) sample->pace = pace_of(there->qd, length_scale);
       if (follows_places_ && there->qd.empty()) {
-        for (std::size_t c = 0; c < change.size(); ++c) change[c] = (there->q[c] - change[c]) / (t[k] - t[k - 1]);
-        sample->pace = pace_of(change, unit);
-        change.assign(there->q.begin(), there->q.end());
+        change.resize(before.size());
+        for (std::size_t c = 0; c < before.size(); ++c) change[c] = (there->q[c] - before[c]) / (t[k] - t[k - 1]);
+        sample->pace = pace_of(change, length_scale);
+        before.assign(there->q.begin(), there->q.end());
       }
     }
     if (!sample) return false;
@@ -316,7 +319,7 @@ bool MotionSamples::cover_part(const MotionPiece& piece, const Part& part, doubl
   const double least = no_part * so_far / length;
   const bool is_told = (off.here <= 1 && off.kink <= least) || std::min(off.of_size, 1.0) <= least;
   const double of_piece = follows_places_ ? 1 : length / (piece.to() - piece.from());
-  const bool is_short = of_piece <= std::ldexp(1, -12);
+  const bool is_short = of_piece <= shortest_part_of_step;
   if (is_rounding || is_short || (!turns_far && is_told)) return take(part);
   Part first, second;
   if (!fill(piece, part.front(), part[4], first) || !fill(piece, part[4], part.back(), second)) return false;
@@ -325,7 +328,7 @@ bool MotionSamples::cover_part(const MotionPiece& piece, const Part& part, doubl
     return std::max(now.of_size, now.kink) > no_progress * std::max(off.of_size, off.kink);
   };
   if (!turns_far && stays(first) && stays(second)) {
-    const bool of_step = of_piece <= std::ldexp(1, -4);
+    const bool of_step = of_piece <= noisy_part_of_step;
     const std::optional<bool> noise = of_step ? true : follows_places_ ? is_noise(piece, part, least) : false;
     if (!noise) return false;
     if (*noise) return take(first) && take(second);

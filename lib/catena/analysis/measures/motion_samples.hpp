@@ -114,9 +114,9 @@ class MotionSamples {
   /// Derivatives are found later, of what limits are made of.
   void differentiate_later() { later_ = true; }
 
-  /// Columns at an instant of the run, without a snapshot; false where they cannot be computed so. Where derivatives
-  /// are wanted, columns come from snapshots.
-  using Values = std::function<bool(double t, std::span<double> out)>;
+  /// Columns at an instant of the run, without a snapshot, and the pace there; nothing where they cannot be computed
+  /// so. Where derivatives are wanted, columns come from snapshots.
+  using Values = std::function<std::optional<double>(double t, std::span<double> out)>;
   void use_values(Values values) { values_ = std::move(values); }
   /// The columns at an instant by use_values().
   std::optional<MotionSample> take_values(double t) const;

@@ -10,9 +10,8 @@
 namespace catena {
 namespace {
 
-// Differences for f''' take this part of the piece after the instant: their error is its fourth power. Of two that
-// differ by less than the second part of their size neither is told from the other.
-constexpr double part_of_piece = 1e-3, no_kink = 1e-6;
+// Differences for f''' take this part of the piece after the instant: their error is its fourth power.
+constexpr double part_of_piece = 1e-3;
 // Differences for rates that have not settled to this part tell nothing, as in a stretch that is no longer than
 // rounding.
 constexpr double unsettled_rate = 1e-5;
@@ -48,7 +47,7 @@ FunctionJump kink_of(const TimeFunction<DesignScalar>& function, double t, const
   for (std::size_t p = 0; p < parameters_at_once; ++p) any = any || moves(p);
   if (!any) return jump;
   const double before = third_derivative(function, t, Side::before), after = third_derivative(function, t, Side::after);
-  if (!(std::abs(before - after) > no_kink * std::max(std::abs(before), std::abs(after)))) return jump;
+  if (!(std::abs(before - after) > thresholds::same_value * std::max(std::abs(before), std::abs(after)))) return jump;
   jump.order = 3;
   for (std::size_t p = 0; p < parameters_at_once; ++p) {
     if (moves(p)) jump.rate[p] = -change.d[p] / (before - after);

@@ -11,8 +11,6 @@ namespace {
 
 // How many crossings an interval may have.
 constexpr std::size_t most_crossings = 40;
-// Crossings nearer to each other than this part of the interval are one.
-constexpr double same_crossing = 1e-9;
 
 std::vector<double> real_values(const CirculatoryModes& found) {
   std::vector<double> values;
@@ -157,7 +155,7 @@ std::vector<SpectrumCrossing> find_crossings(const SpectrumAt& at, const Spectru
     if (from.s >= high.s) break;
   }
   complete = from.is_like(high);
-  return merged(found, same_crossing * (high.s - low.s));
+  return merged(found, thresholds::same_instant * (high.s - low.s));
 }
 
 bool find_hidden_change(const SpectrumAt& at, const SpectrumSample& a, const SpectrumSample& b, const SpectrumSample& c,
