@@ -9,18 +9,21 @@
 
 namespace {
 
-std::atomic<long> allocations{0};
+std::atomic<long> allocations{0}, bytes_asked_for{0};
 
 void* counted_malloc(std::size_t size) {
   ++allocations;
+  bytes_asked_for += static_cast<long>(size);
   return std::malloc(size);
 }
 void* counted_calloc(std::size_t count, std::size_t size) {
   ++allocations;
+  bytes_asked_for += static_cast<long>(count * size);
   return std::calloc(count, size);
 }
 void* counted_realloc(void* place, std::size_t size) {
   ++allocations;
+  bytes_asked_for += static_cast<long>(size);
   return std::realloc(place, size);
 }
 
@@ -40,6 +43,7 @@ HeapWatch::HeapWatch() {
   SuiteSparse_config.calloc_func = counted_calloc;
   SuiteSparse_config.realloc_func = counted_realloc;
   allocations = 0;
+  bytes_asked_for = 0;
 }
 
 HeapWatch::~HeapWatch() {
@@ -49,5 +53,7 @@ HeapWatch::~HeapWatch() {
 }
 
 long HeapWatch::count() const { return allocations; }
+
+long HeapWatch::bytes() const { return bytes_asked_for; }
 
 }  // namespace catena::testing

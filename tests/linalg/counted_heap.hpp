@@ -11,6 +11,7 @@ class HeapWatch {
   HeapWatch(const HeapWatch&) = delete;
   HeapWatch& operator=(const HeapWatch&) = delete;
   long count() const;
+  long bytes() const;  ///< asked for, freed or not
 };
 
 }  // namespace catena::testing
