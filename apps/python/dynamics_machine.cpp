@@ -12,7 +12,7 @@ DynamicsMachine::DynamicsMachine(OpenScene scene, const DynamicsOptions& options
 
 void DynamicsMachine::use_model(std::shared_ptr<const Model> model) {
   const PlanOptions options = plan(*model);
-  const bool touches = !model->gaps().empty() || !model->frictions().empty();
+  bool touches = !model->gaps().empty() || !model->frictions().empty();
   // Each step of a motion with contacts is an analysis of its own, which knows nothing of the work done before.
   ColumnSources sources = sources_;
   sources.work = !touches;
@@ -25,12 +25,22 @@ void DynamicsMachine::use_model(std::shared_ptr<const Model> model) {
     free = std::make_unique<Dynamics>(model, options, options_);
     free->start_from(state_);
   }
-  model_ = std::move(model);
-  touches_ = touches;
-  sources_ = sources;
-  free_ = std::move(free);
-  touching_ = std::move(touching);
-  columns_.reset();
+  const SystemState here = state_;
+  const auto take = [&] {
+    model_.swap(model);
+    std::swap(touches_, touches);
+    std::swap(sources_, sources);
+    free_.swap(free);
+    touching_.swap(touching);
+    columns_.reset();
+  };
+  take();
+  if (!row()) return;  // nothing was shown yet, so that nothing shown is of the parameters before
+  if (const AnalysisReport report = go({here.t}, nullptr); !report.ok()) {
+    take();
+    state_ = here;
+    throw StepError(report);
+  }
 }
 
 // With friction the model that is analysed has more equations than that of the scene.

@@ -37,11 +37,11 @@ class FourBar:
         weights = [-1 / 60, 3 / 20, -3 / 4, 3 / 4, -3 / 20, 1 / 60]
         return self.speed * sum(w * p for w, p in zip(weights, pens)) / h
 
-    def model(self):
-        """The same in catena, its given configuration a little off."""
+    def model(self, driven=True):
+        """The same in catena, its given configuration a little off; under gravity alone where it is not driven."""
         coupler, rocker, _ = self.pose(0)
         parameters = {"a": self.a, "b": self.b, "c": self.c, "d": self.d, "speed": self.speed}
-        model = catena.Model("four-bar", parameters=parameters)
+        model = catena.Model("four-bar", parameters=parameters, gravity=[0, 0 if driven else -9.81])
         model.body("crank", points={"end": ["a", 0]}, mass=1, inertia=0.1)
         model.body("coupler", position=["a", 0], angle=coupler + 0.02, mass=1, inertia=0.1,
                    points={"end": ["b", 0], "pen": [self.u, self.v]})
@@ -52,7 +52,8 @@ class FourBar:
             catena.Revolute(name="B", i="coupler.end", j="rocker.end"),
             catena.Revolute(name="C", i=("ground", ["d", 0]), j="rocker"),
         )
-        model.drive(catena.AbsoluteAngle(name="drive", i="crank", value={"polynomial": [0, "speed"]}))
+        if driven:
+            model.drive(catena.AbsoluteAngle(name="drive", i="crank", value={"polynomial": [0, "speed"]}))
         return model
 
 

@@ -225,6 +225,36 @@ class DynamicsSteps(unittest.TestCase):
             self.assertAlmostEqual(dynamics["mass.x"], x, 8)
             self.assertAlmostEqual(dynamics["mass.vx"], v, 8)
 
+    def test_set_shows_the_forces_of_the_new_parameters(self):
+        model = oscillator(2, 100, 0, 0.5)
+        dynamics = catena.Dynamics(model.scene(), outputs=["mass.x", "mass.ax", "energy.potential"])
+        dynamics.advance_to(0)
+        row = dynamics.row
+        dynamics.set(k=200)  # an array sees it, too
+        numpy.testing.assert_allclose(row[1:], [0.5, -50, 25], rtol=1e-12)
+        dynamics.advance_to(0.3)
+        x = 0.5 * math.cos(10 * 0.3)
+        dynamics.set(k=50, push=3)
+        numpy.testing.assert_allclose(row[1:], [x, (3 - 50 * x) / 2, 25 * x * x - 3 * x], rtol=1e-6)
+        dynamics.set(k=200, push=0)
+        dynamics.advance_to(1)
+        self.assertAlmostEqual(dynamics["mass.x"], 0.5 * math.cos(10), 6)
+
+    def test_set_to_what_cannot_be_assembled_changes_nothing(self):
+        bar = FourBar(3)
+        model = bar.model(driven=False)
+        dynamics = catena.Dynamics(model.scene(), outputs=["coupler.angle", "coupler.omega"])
+        dynamics.advance_to(0.1)
+        before, parameters = dynamics.row.copy(), dynamics.parameters
+        with self.assertRaisesRegex(catena.AnalysisError, "misses by"):
+            dynamics.set(b=50 * bar.b)
+        self.assertEqual(dynamics.parameters, parameters)
+        numpy.testing.assert_array_equal(dynamics.row, before)
+        other = catena.Dynamics(model.scene(), outputs=["coupler.angle", "coupler.omega"])
+        for machine in (dynamics, other):
+            machine.advance_to(0.4)
+        numpy.testing.assert_allclose(dynamics.row, other.row, rtol=0, atol=1e-6)
+
     def test_work_sums_up_over_steps(self):
         model = oscillator(1, 4, 0.4, 1)
         dynamics = catena.Dynamics(model.scene(), outputs=["energy"], tolerance=1e-10)
