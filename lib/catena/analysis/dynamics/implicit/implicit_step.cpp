@@ -1,5 +1,6 @@
 #include "catena/analysis/dynamics/implicit/implicit_step.hpp"
 
+#include "catena/analysis/dynamics/integrators/dense_output.hpp"
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
 
 namespace catena::implicit_step {
@@ -13,16 +14,9 @@ void interpolate(const Ends& ends, double t, std::size_t n, std::span<double> y)
   }
 }
 
-void interpolate_quintic(const Ends& ends, double t, std::size_t n, std::span<double> y) {
-  const double h = ends.to - ends.from, s = (t - ends.from) / h;
-  for (std::size_t c = 0; c < n; ++c) {
-    const double v0 = h * ends.y_before[n + c], a0 = h * h * ends.slope_before[n + c];
-    const double d = ends.y[c] - ends.y_before[c] - v0 - a0 / 2, w = h * ends.y[n + c] - v0 - a0,
-                 b = h * h * ends.slope[n + c] - a0;
-    const double k3 = 10 * d - 4 * w + b / 2, k4 = -15 * d + 7 * w - b, k5 = 6 * d - 3 * w + b / 2;
-    y[c] = ends.y_before[c] + s * (v0 + s * (a0 / 2 + s * (k3 + s * (k4 + s * k5))));
-    y[n + c] = (v0 + s * (a0 + s * (3 * k3 + s * (4 * k4 + s * 5 * k5)))) / h;
-  }
+void interpolate_quintic(const Ends& ends, double t, std::size_t n, const ErrorScale& scale, std::span<double> y) {
+  const double h = ends.to - ends.from;
+  move_by_ends({h, ends.y_before, ends.y, ends.slope_before, ends.slope}, n, (t - ends.from) / h, scale, y);
   const auto rest = [n](std::span<const double> all) { return all.subspan(2 * n); };
   interpolate({ends.from, ends.to, rest(ends.y_before), rest(ends.y), rest(ends.slope_before), rest(ends.slope)}, t, 0,
               y.subspan(2 * n));

@@ -27,9 +27,8 @@ struct Ends {
 /// The cubic of places and velocities, and that of velocities and accelerations; n: coordinates.
 void interpolate(const Ends& ends, double t, std::size_t n, std::span<double> y);
 
-/// Places by the polynomial of order 5 through places, velocities and accelerations of both ends, velocities by its
-/// derivative; what follows them by the cubic.
-void interpolate_quintic(const Ends& ends, double t, std::size_t n, std::span<double> y);
+/// Places and velocities as move_by_ends() has them (dense_output.hpp); what follows them by the cubic.
+void interpolate_quintic(const Ends& ends, double t, std::size_t n, const ErrorScale& scale, std::span<double> y);
 
 /// Moves the end of a step onto the constraints, with factors made there, and leaves the residual of its places, in
 /// length scales or rad, in `residual`. False: it is too far from them.

@@ -173,7 +173,7 @@ void Radau::interpolate(double t, std::span<double> y) {
   if (stepped_by_runge_kutta_) return runge_kutta_.interpolate(t, y);
   if (smooth_ == Smooth::unknown) smooth_ = is_smooth() ? Smooth::yes : Smooth::no;
   if (smooth_ == Smooth::yes) {
-    implicit_step::interpolate_quintic(ends(), t, motion_.coordinates(), y);
+    implicit_step::interpolate_quintic(ends(), t, motion_.coordinates(), scale_, y);
     return tell_work_between(t, y);
   }
   const std::array<double, 3>& c = radau_tableau().c;
@@ -193,7 +193,7 @@ void Radau::interpolate(double t, std::span<double> y) {
 bool Radau::is_smooth() {
   const std::size_t n = motion_.coordinates();
   for (std::size_t i = 0; i < 2; ++i) {
-    implicit_step::interpolate_quintic(ends(), t_before_ + radau_tableau().c[i] * last_h_, n, y_stage_);
+    implicit_step::interpolate_quintic(ends(), t_before_ + radau_tableau().c[i] * last_h_, n, scale_, y_stage_);
     for (std::size_t k = 0; k < 2 * n; ++k) y_stage_[k] -= y_before_[k] + last_z_[i][k];
     if (!(size_of(std::span(y_stage_).first(2 * n), last_h_, 1) <= of_stages)) return false;
   }

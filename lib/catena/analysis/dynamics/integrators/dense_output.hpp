@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "catena/analysis/dynamics/integrators/error_scale.hpp"
 #include "catena/analysis/dynamics/integrators/stages.hpp"
 
 namespace catena {
@@ -20,8 +21,8 @@ struct StepEnds {
   std::span<const double> y0, y1, slope0, slope1;
 };
 
-/// Positions and velocities, n of each, at s (0 ... 1) by the ends.
-void move_by_ends(const StepEnds& ends, std::size_t n, double s, std::span<double> y);
+/// Positions and velocities, n of each, at s (0 ... 1) by the ends; `scale` knows the rounding of positions.
+void move_by_ends(const StepEnds& ends, std::size_t n, double s, const ErrorScale& scale, std::span<double> y);
 
 class DenseOutput {
  public:

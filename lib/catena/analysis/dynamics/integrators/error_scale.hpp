@@ -86,6 +86,10 @@ class ErrorScale {
     const double moved = h * h * rounding(c);
     return c % 3 == 2 ? tolerance_ + moved : (place_tolerance_ + moved) * length;
   }
+  /// What a position may be off by rounding alone, where constraints tie it to others that are larger.
+  double rounding_of_place(std::size_t c) const {
+    return c % 3 == 2 ? thresholds::few_roundings : std::max(thresholds::few_roundings, place_rounding_) * length;
+  }
   double velocity_unit(std::size_t c, double h, double v) const {
     const double unit = c % 3 == 2 ? 1 : length;
     return tolerance_ * (std::min(rate_ * unit, root_energy_ * speed_[c]) + std::abs(v)) +

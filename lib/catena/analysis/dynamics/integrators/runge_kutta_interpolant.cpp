@@ -116,7 +116,7 @@ void RungeKutta::evaluate_interpolant(double t, std::span<double> y) {
   const double s = (t - t_before_) / (t_ - t_before_);
   get_interpolant_ready();
   if (!dense_.by_ends()) return dense_.evaluate(y_before_, s, y);
-  move_by_ends(ends(), motion_.coordinates(), s, y);
+  move_by_ends(ends(), motion_.coordinates(), s, scale_, y);
   if (motion_.works() > 0) work_by_ends(s, y);
 }
 
@@ -132,7 +132,7 @@ void RungeKutta::work_by_ends(double s, std::span<double> y) {
   bool known = true;
   for (std::size_t i = first; i < y.size(); ++i) y[i] = y_before_[i];
   for (std::size_t k = 0; k < std::size(places) && known; ++k) {
-    move_by_ends(ends(), motion_.coordinates(), places[k] * s, y_stage_);
+    move_by_ends(ends(), motion_.coordinates(), places[k] * s, scale_, y_stage_);
     known = derivative(t_before_ + places[k] * s * h, Side::after, y_stage_, power);
     for (std::size_t i = first; i < y.size(); ++i) y[i] += weights[k] * s * h * power[i];
   }
