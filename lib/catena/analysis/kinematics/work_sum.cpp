@@ -15,8 +15,9 @@ namespace {
 // Parts of the energy exchanged so far: the error allowed in a stretch, above which it is repeated in shorter ones; and
 // the total error above which results carry a warning. Both include rounding of energies.
 constexpr double allowed_part = 1e-10, doubtful_error = 1e-6, work_rounding = thresholds::carried_rounding;
-// Where a law jumps, the shortest stretch is wrong by some half of what it exchanges: 1e-8 rad of the motion. Without
-// laws powers bend only towards dead points, where they have no bound: then the square root of this.
+// Where a law jumps, or friction turns round, the shortest stretch is wrong by some half of what it exchanges: 1e-8 rad
+// of the motion. Without them powers bend only towards dead points, where they have no bound: then the square root of
+// this.
 constexpr double shortest_part = 1.0 / (1 << 24);
 
 constexpr std::array<double, 4> weights = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
@@ -100,7 +101,8 @@ double WorkSum::allowed_error(const Snapshot& end) const {
 }
 
 bool WorkSum::can_be_shorter() const {
-  return part_ > (evaluator_->model().laws.empty() ? std::sqrt(shortest_part) : shortest_part);
+  const bool bends = !evaluator_->model().laws.empty() || samples_.rubs();
+  return part_ > (bends ? shortest_part : std::sqrt(shortest_part));
 }
 
 void WorkSum::take_back() {

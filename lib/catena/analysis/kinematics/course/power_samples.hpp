@@ -45,6 +45,7 @@ class PowerSamples {
   void take(std::size_t place, double dissipated, double supplied, std::span<const double> qd);
   /// Vectors there whose lengths are powers of friction, W, to be filled in; empty: not known.
   std::vector<Vec2<double>>& pressing(std::size_t place) { return pressing_[place]; }
+  bool rubs() const { return !pressing_[1].empty(); }
   /// The largest power of those that come through zero, or near to it, in all, W.
   double turning_power() const;
   /// The next stretch begins where this one ends.
