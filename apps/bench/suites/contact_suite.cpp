@@ -1,5 +1,5 @@
-// Bodies that bounce, turn over, rub and stick, at tolerances 1e-3 ... 1e-11, against exact motions. Without digits, which
-// are a second run's: no engine beside gives any.
+// Bodies that bounce, turn over, rub and stick, at tolerances 1e-3 ... 1e-11, against exact motions. Without digits,
+// which are a second run's: no engine beside gives any.
 #include <fmt/format.h>
 
 #include <cmath>
