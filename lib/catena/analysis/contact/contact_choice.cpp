@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/analysis/contact/problem/same_slides.hpp"
 #include "catena/analysis/contact/several_states.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
@@ -58,6 +59,7 @@ Report ContactSwitch::press_joints(double t, std::span<const double> qd, const C
       place.kinetic = points_[active_[a]].mu * normal;
     }
     if (!problem.solve()) return wedged(t);
+    share_by_limits(problem);
     if (change <= thresholds::sum_rounding * size) return {};
   }
   return failure(t, fmt::format("the friction of {} and the reactions that press there do not settle within {} rounds: "
@@ -196,6 +198,7 @@ Report ContactSwitch::choose_among(double t, std::span<const double> qd, std::ve
   ContactProblem problem(active_.size());
   set_up(problem, cause);
   if (cause.shares) prefer_giving_way(problem, states, cause);
+  share_or_leave(t, qd, states, cause, loads, problem);
   if (Report pressed = press_joints(t, qd, loads, problem); !pressed.ok())
     return is_jammed(true) ? blocked(t, active_) : pressed;
   if (!cause.shares) stick_where_possible(problem);
@@ -210,10 +213,12 @@ Report ContactSwitch::choose_among(double t, std::span<const double> qd, std::ve
     if (!joint) states[k].closed = problem.state[a] != ContactProblem::State::open;
     states[k].direction = problem.state[a] == ContactProblem::State::slides ? problem.direction[a] : 0;
     states[k].tied = false;
+    states[k].master = -1;
   }
   SharedForces forces(problem, active_);
   if (!forces.places().empty()) shared_.push_back(std::move(forces));
   tie_grips(problem, states);
+  tie_joints(problem, states);
   return {};
 }
 

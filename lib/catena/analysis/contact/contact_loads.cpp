@@ -37,12 +37,23 @@ std::string names_of(const Model& model, const std::vector<ContactPoint>& points
 }
 
 bool ContactLoads::slides(std::size_t k) const {
-  if (!points_[k].has_friction() || !states_[k].closed || points_[k].mu == 0) return false;
-  return !points_[k].is_exact() || states_[k].direction != 0 || states_[k].tied;
+  if (!points_[k].has_friction() || !states_[k].closed) return false;
+  if (states_[k].tied) return true;
+  return points_[k].mu > 0 && (!points_[k].is_exact() || states_[k].direction != 0);
 }
 
 double ContactLoads::sigma(std::size_t k) const {
   return points_[k].is_exact() ? states_[k].direction : std::tanh(slide_[k].rate / points_[k].smoothing);
+}
+
+// Of what presses, against the slide.
+double ContactLoads::coefficient(std::size_t k) const {
+  return states_[k].tied ? -states_[k].held : points_[k].mu * sigma(k);
+}
+
+// The row of the slide whose friction that of point k follows; -1: none.
+int ContactLoads::row_of_master(std::size_t k) const {
+  return states_[k].tied && states_[k].master >= 0 ? row_of_slide(at(states_[k].master)) : -1;
 }
 
 double ContactLoads::compliant_force(const ContactPoint& point, const Evaluator::ScalarMotion& gap) const {

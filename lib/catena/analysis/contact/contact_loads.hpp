@@ -4,6 +4,8 @@
 //   friction on j along the slide:  f_k = -mu sigma_k N_k        sigma_k: sign of the slip, or tanh(slip / vs)
 //   f + mu sigma N(f) = 0           N(f) = N(lambda_0 + B f)       B_l: multipliers that a unit of friction l makes
 //
+// Friction of a joint that others keep from slipping is a part of N, or of the friction of one of these, in place of
+// mu sigma N (same_slides.hpp).
 // A grip of an inextensible rope (rope_grips.hpp) has f_k = -(1 - e^(-sigma_k E_k)) T_k-1, with T_k-1 = -lambda + f_1 +
 // ... + f_k-1 of the same rope in place of N; those of an elastic one follow from the place (elastic_grips.hpp).
 //
@@ -100,6 +102,8 @@ class ContactLoads final : public StateLoads {
   double joint_slope(const ContactPoint& point, std::span<const double> lambda, std::span<const double> along) const;
   bool slides(std::size_t k) const;
   double sigma(std::size_t k) const;
+  double coefficient(std::size_t k) const;
+  int row_of_master(std::size_t k) const;
   bool is_guide(const ContactPoint& point) const;
   void find_responses(EquationsOfMotion& equations);
   void find_residual(std::span<const double> lambda);

@@ -139,9 +139,14 @@ void ContactLoads::find_residual(std::span<const double> lambda) {
     const std::size_t k = coupled_[p];
     const auto row = static_cast<Eigen::Index>(p);
     const bool grip = points_[k].kind == ContactKind::grip;
-    const double factor = grip ? growth(k) : points_[k].mu * sigma(k);
-    const double pressed = grip ? tension_of_sizes(k) : normal_from(k, {}, s.lambda);
-    const double terms = grip ? tension_terms(k) : std::abs(normal_from(k, {}, s.lambda_terms));
+    const double factor = grip ? growth(k) : coefficient(k);
+    const int of_master = row_of_master(k);
+    const double pressed = grip             ? tension_of_sizes(k)
+                           : of_master >= 0 ? -s.lambda[at(of_master)]
+                                            : normal_from(k, {}, s.lambda);
+    const double terms = grip             ? tension_terms(k)
+                         : of_master >= 0 ? s.lambda_terms[at(of_master)]
+                                          : std::abs(normal_from(k, {}, s.lambda_terms));
     s.residual(row) = s.f(row) + factor * pressed;
     s.terms(row) = std::abs(s.f(row)) + std::abs(factor) * terms;
   }
@@ -154,12 +159,15 @@ void ContactLoads::find_slope() {
     const std::size_t k = coupled_[p];
     const ContactPoint& point = points_[k];
     const bool grip = point.kind == ContactKind::grip, joint = point.kind == ContactKind::joint;
-    const double factor = grip ? growth(k) : point.mu * sigma(k);
-    const std::size_t pressing = grip || joint ? 0 : at(evaluator_.plan().element_row[at(point.element)]);
+    const double factor = grip ? growth(k) : coefficient(k);
+    const int of_master = row_of_master(k);
+    const std::size_t pressing = of_master >= 0  ? at(of_master)
+                                 : grip || joint ? 0
+                                                 : at(evaluator_.plan().element_row[at(point.element)]);
     for (std::size_t l = 0; l < coupled_.size(); ++l) {
-      const double change = grip    ? tension_slope(k, response_[l], coupled_[l])
-                            : joint ? joint_slope(point, s.lambda, response_[l])
-                                    : -response_[l][pressing];
+      const double change = grip                     ? tension_slope(k, response_[l], coupled_[l])
+                            : joint && of_master < 0 ? joint_slope(point, s.lambda, response_[l])
+                                                     : -response_[l][pressing];
       s.slope(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(l)) = (p == l ? 1 : 0) + factor * change;
     }
   }

@@ -63,8 +63,11 @@ struct ContactState {
   bool closed = false;  ///< a rigid one: its row holds; a compliant one: it presses; a joint always is; a grip: taut
   int direction = 0;    ///< of exact friction: the sign of the slip, 0: it sticks
   double held = 0;      ///< of an elastic rope's grip that sticks: u and the stretch behind it, m; see also `tied`
-  /// Of a grip without stiffness that others keep from slipping: T_out / T_in = e^held as long as they do.
+  /// Others keep it from slipping, and its share of what is held is not unique. As long as they do it stays as it was
+  /// found: of a grip without stiffness T_out / T_in = e^held, of a joint the friction held N, or held times that of
+  /// another point.
   bool tied = false;
+  int master = -1;  ///< that point; see same_slides.hpp
 
   friend bool operator==(const ContactState&, const ContactState&) = default;
 };

@@ -1,7 +1,6 @@
 // ContactSwitch: grips that cannot slip because others do not (a tackle in which two sheaves hold holds altogether).
 // Their equations would depend on those of the others, and the tensions beside them are not unique: they keep what was
 // found.
-#include <Eigen/QR>
 #include <cmath>
 
 #include "catena/analysis/contact/contact_switch.hpp"
@@ -9,20 +8,6 @@
 
 namespace catena {
 namespace {
-
-/// Whether row r of D depends on others.
-bool depends(const ContactProblem& problem, const std::vector<std::size_t>& rows, std::size_t r) {
-  const auto size = static_cast<Eigen::Index>(rows.size());
-  Eigen::MatrixXd D(size, size);
-  Eigen::VectorXd d(size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    for (Eigen::Index j = 0; j < size; ++j) D(i, j) = problem.D(rows[at(i)], rows[at(j)]);
-    d(i) = problem.D(rows[at(i)], r);
-  }
-  const double left =
-      size > 0 ? problem.D(r, r) - d.dot(D.completeOrthogonalDecomposition().solve(d)) : problem.D(r, r);
-  return !(left > ContactProblem::rounding_of_sums * problem.D(r, r));
-}
 
 /// The acceleration along place a, zero if it is rounding.
 double acceleration(const ContactProblem& problem, std::size_t a) {
@@ -55,7 +40,7 @@ void ContactSwitch::tie_grips(const ContactProblem& problem, std::vector<Contact
     if (!states[k].closed || !(before > 0) || !(behind > 0)) continue;
     const bool rests = std::abs(slide_[k].rate) <= part_of_speed(k, no_speed);
     const bool stays = rests && states[k].direction != 0 && acceleration(problem, a) == 0;
-    const bool repeats = states[k].direction == 0 && depends(problem, rows, 2 * a + 1);
+    const bool repeats = states[k].direction == 0 && problem.depends(2 * a + 1, rows);
     if (states[k].direction == 0 && !repeats) rows.push_back(2 * a + 1);
     if (stays || repeats) states[k] = {.closed = true, .held = std::log(behind / before), .tied = true};
   }

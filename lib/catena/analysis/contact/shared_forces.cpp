@@ -82,11 +82,15 @@ SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std:
     columns.insert(columns.end(), slope.begin(), slope.end());
     columns.push_back(1);
   };
+  const auto sticks_with_others = [&](const Held& h) {
+    return h.along && problem.place[h.place].has_normal && row(h.place, true).norm() > share;
+  };
+  const bool any_contact = std::any_of(held.begin(), held.end(), sticks_with_others);
   for (std::size_t k = 0; k < problem.place.size(); ++k) {
     const ContactProblem::Place& p = problem.place[k];
     const Eigen::VectorXd normal = row(k, false), along = row(k, true);
-    // Of joints what presses follows from other reactions: they are watched one by one.
-    if (!p.has_normal || normal.norm() + along.norm() <= share) continue;
+    // Joints that share with joints and stops alone: same_slides.hpp. What presses them follows from other reactions.
+    if ((!p.has_normal && !any_contact) || normal.norm() + along.norm() <= share) continue;
     places_.push_back(point[k]);
     if (problem.state[k] == State::sticks) {
       for (const double sign : {1.0, -1.0}) add({point[k], p.mu_static, sign}, p.mu_static * normal + sign * along);

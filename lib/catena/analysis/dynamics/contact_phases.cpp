@@ -342,7 +342,13 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
   }
   if (!point.has_friction() || !point.is_exact() || !state.closed) return;
   needs.multipliers = true;
-  if (state.direction != 0) {
+  if (state.tied && state.master < 0) return;  // a part of what presses, below its limit
+  if (state.tied) {
+    const int row = dynamics.plan().element_row[at(contacts_.points[at(state.master)].slide)];
+    watch([normal, row, mu = point.mu_static,
+           held = state.held](const Snapshot& s) { return mu * normal(s) - std::abs(held * s.lambda[at(row)]); },
+          1, PhaseEnd::slide);
+  } else if (state.direction != 0) {
     watch([slide,
            sign = state.direction](const Snapshot& s) { return sign * s.evaluator.scalar_motion(slide, s.qd).rate; },
           1, PhaseEnd::slide);
@@ -365,7 +371,8 @@ double ContactPhases::scale_of(const WatchedPlace& watched) const {
   if (watched.ends == PhaseEnd::stretch) size = length;
   if (watched.ends == PhaseEnd::contact && !state.closed) size = point.turns ? 1 : length;
   // A compliant place that is open, in parts of the sizes; exponents of grips.
-  if ((watched.ends == PhaseEnd::pressing && !state.closed) || (watched.ends == PhaseEnd::slide && state.tied))
+  if ((watched.ends == PhaseEnd::pressing && !state.closed) ||
+      (watched.ends == PhaseEnd::slide && state.tied && point.kind == ContactKind::grip))
     size = 1;
   if (watched.ends == PhaseEnd::slide && state.direction != 0) {
     largest = rate_of_speed(point, switch_->speed(), length);

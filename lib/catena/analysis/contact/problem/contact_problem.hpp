@@ -83,6 +83,8 @@ class ContactProblem {
   /// After solve(): of x in a row, at which it counts as one: 1 / sqrt(D_rr), of a grip that of its rope; 0 where
   /// nothing gives way.
   double unit(std::size_t row) const { return units_[row]; }
+  /// Whether a row of D depends on others of it.
+  bool depends(std::size_t row, const std::vector<std::size_t>& others) const;
   /// x that goes with the present states, whatever its limits; what slides under a known force keeps its own.
   void solve_states();
 
@@ -126,6 +128,7 @@ class ContactProblem {
   bool search();
   bool try_states();
   bool keeps_states() const;
+  bool keeps_limits() const;
   // contact_pivots.cpp
   class Pivots;
   /// Of a place: the slip that it has or is meant to have, whether it slipped where it could have stuck, whether it is

@@ -1,4 +1,5 @@
 // ContactProblem: its sums, their rounding, and what is compared with them.
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -78,6 +79,21 @@ bool ContactProblem::is_wedged() const {
     if (!(across - p.mu * p.slip * D(2 * k, 2 * k + 1) > 0)) return true;
   }
   return false;
+}
+
+// What is left of it once the others are taken away, w = 0 in them.
+bool ContactProblem::depends(std::size_t row, const std::vector<std::size_t>& others) const {
+  const auto size = static_cast<Eigen::Index>(others.size());
+  Eigen::MatrixXd of_others(size, size);
+  Eigen::VectorXd d(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const std::size_t r = others[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < size; ++j) of_others(i, j) = D(r, others[static_cast<std::size_t>(j)]);
+    d(i) = D(r, row);
+  }
+  const double left =
+      size > 0 ? D(row, row) - d.dot(of_others.completeOrthogonalDecomposition().solve(d)) : D(row, row);
+  return !(left > rounding_of_sums * D(row, row));
 }
 
 }  // namespace catena

@@ -13,6 +13,7 @@
 #include <span>
 
 #include "catena/analysis/contact/problem/contact_problem.hpp"
+#include "catena/analysis/contact/problem/same_slides.hpp"
 #include "catena/linalg/rank/nonnegative_least_squares.hpp"
 
 namespace catena {
@@ -107,7 +108,9 @@ bool ContactProblem::try_states() {
     x[2 * of.place] += of.normal * sizes(c);
     x[2 * of.place + 1] += of.along * sizes(c);
   }
-  return keeps_states();
+  if (!keeps_states()) return false;
+  share_by_limits(*this);
+  return keeps_limits();
 }
 
 // Whether x goes with the present states: closed gaps stay closed, stuck slides at rest, others go as they are meant
@@ -125,6 +128,13 @@ bool ContactProblem::keeps_states() const {
       if (state[k] == State::sticks && std::abs(w) > rounding) return false;
       if (state[k] == State::slides && p.slip == 0 && direction[k] * w < -rounding) return false;
     }
+  }
+  return true;
+}
+
+// Whether joints that stick hold no more than they can.
+bool ContactProblem::keeps_limits() const {
+  for (std::size_t k = 0; k < place.size(); ++k) {
     if (state[k] == State::sticks && !place[k].has_normal && x[2 * k + 1] > place[k].limit * (1 + rounding_of_sums))
       return false;
   }

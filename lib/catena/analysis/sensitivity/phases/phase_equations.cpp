@@ -68,6 +68,7 @@ bool PhaseEquations::factorize(double t, Side side, std::span<const DesignScalar
 PlaceLaw PhaseEquations::law(const DesignPlace& place, std::size_t k) const {
   const ContactPoint& point = contacts_.points[k];
   PlaceLaw law{point, states_[k], place, gap_row(k), slide_row(k)};
+  if (states_[k].tied && states_[k].master >= 0) law.master_row = slide_row(at(states_[k].master));
   if (point.kind != ContactKind::joint) return law;
   law.joint_row = plan().element_row[at(point.joint)];
   law.has_moment = plan().row_is_angle[at(law.joint_row) + 1] != 0;
@@ -106,6 +107,15 @@ PhaseEquations::EndRate PhaseEquations::rate_of_end(const DesignMechanism& mecha
         {},
         fmt::format("at t = {:.9g} s places that hold each other, \"{}\" among them, give way: when has no derivative",
                     mechanism.time(), name())};
+  const auto is_tied = [&](const ContactState& state) {
+    return state.tied && point.kind == ContactKind::joint &&
+           (&state == &states_[watched.place] || state.master == static_cast<int>(watched.place));
+  };
+  if (watched.ends == PhaseEnd::slide && std::any_of(states_.begin(), states_.end(), is_tied))
+    return {{},
+            fmt::format("at t = {:.9g} s friction of joints that hold the same, \"{}\" among them, reaches its limit: "
+                        "when has no derivative",
+                        mechanism.time(), name())};
   if (watched.ends == PhaseEnd::slide) {
     if (states_[watched.place].direction == 0) return {};
     return {mechanism.measure(point.slide).dd.v, {}};
@@ -125,6 +135,11 @@ DesignScalar PhaseEquations::normal(const Design& design, std::size_t k, std::sp
   return there.normal(motion_of_forces(design.mechanism, there), lambda);
 }
 
+DesignScalar PhaseEquations::pressing(const Design& design, std::size_t k, std::span<const DesignScalar> lambda) const {
+  const PlaceLaw there = law(design.places[k], k);
+  return there.pressing(motion_of_forces(design.mechanism, there), lambda);
+}
+
 // Multipliers of compliant places and of their friction, which follow from the state; the friction that does not.
 std::vector<PhaseEquations::Coupled> PhaseEquations::find_known(const Design& design, std::span<const DesignScalar> q,
                                                                 std::span<const DesignScalar> qd,
@@ -141,7 +156,7 @@ std::vector<PhaseEquations::Coupled> PhaseEquations::find_known(const Design& de
     const DesignScalar pressing = compliant ? law.compliant_force(now) : DesignScalar();
     if (compliant) lambda[at(law.gap_row)] = -pressing / law.row_factor(now.gap);
     if (!slides) continue;
-    const DesignScalar factor = law.place.mu * law.slip_sign(now.slip);
+    const DesignScalar factor = law.coefficient(now.slip);
     if (compliant)
       lambda[at(law.slide_row)] = factor * pressing;
     else

@@ -78,6 +78,7 @@ class PhaseEquations {
                   std::span<DesignScalar> qdd, std::span<DesignScalar> lambda);
   /// What contacts do at the state of the last accelerate().
   void contacts(const Design& design, std::span<const DesignScalar> lambda, DesignContacts& out) const;
+  DesignScalar pressing(const Design& design, std::size_t k, std::span<const DesignScalar> lambda) const;
   /// What presses place k, with derivatives, from multipliers; the mechanism is at the state.
   DesignScalar normal(const Design& design, std::size_t k, std::span<const DesignScalar> lambda) const;
   /// Moves derivatives of positions and velocities onto the constraints, least in the metric of the masses. `anchor`:

@@ -15,10 +15,14 @@ constexpr double settled_size = 1e-15;
 
 }  // namespace
 
-// What presses a place, in plain numbers, and its slope along a change of the multipliers.
+// What the friction of a place is a part of, in plain numbers, and its slope along a change of the multipliers.
 double PhaseEquations::normal_value(const Design& design, std::size_t k, std::span<const double> lambda,
                                     std::span<const double> along, double& slope) const {
   const ContactPoint& point = contacts_.points[k];
+  if (const int master = law(design.places[k], k).master_row; master >= 0) {
+    slope = along.empty() ? 0 : -along[at(master)];
+    return -lambda[at(master)];
+  }
   if (point.kind == ContactKind::rigid) {
     slope = along.empty() ? 0 : -along[at(gap_row(k))];
     return -lambda[at(gap_row(k))];
@@ -111,7 +115,7 @@ void PhaseEquations::add_slopes(const Design& design, std::span<const Coupled> c
                                                                                                        m);
   const Eigen::PartialPivLU<Eigen::MatrixXd> factors(slope);
   std::vector<DesignScalar> residual;
-  for (const Coupled& one : coupled) residual.push_back(one.factor * normal(design, one.place, lambda));
+  for (const Coupled& one : coupled) residual.push_back(one.factor * pressing(design, one.place, lambda));
   for (std::size_t p = 0; p < design.count; ++p) {
     Eigen::VectorXd side(m);
     for (Eigen::Index l = 0; l < m; ++l) side(l) = -residual[static_cast<std::size_t>(l)].d[p];

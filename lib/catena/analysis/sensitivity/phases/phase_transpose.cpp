@@ -79,6 +79,7 @@ PlaceMotion PhaseTranspose::motion_at(const Point& point, std::size_t place) {
 
 PhaseTranspose::Rows PhaseTranspose::normal_rows(std::size_t place) const {
   const PlaceLaw law = equations_.law(places_[place], place);
+  if (law.master_row >= 0) return {law.master_row, -1, -1};
   if (law.point.kind == ContactKind::compliant) return {-1, -1, -1};
   if (law.point.kind == ContactKind::rigid) return {law.gap_row, -1, -1};
   return {law.joint_row, law.joint_row + 1, -1};
@@ -105,8 +106,9 @@ PhaseTranspose::Partials PhaseTranspose::partials(const PlaceMotion& motion, con
 DesignScalar PhaseTranspose::known(const Term& term, const DesignPlace& place, const PlaceMotion& motion) const {
   const PlaceLaw law = equations_.law(place, term.place);
   if (!term.is_slide) return -law.compliant_force(motion) / law.row_factor(motion.gap);
-  const DesignScalar sign = term.direction != 0 ? DesignScalar(term.direction) : law.slip_sign(motion.slip);
-  return place.mu * sign * law.normal(motion, lambda_);
+  const DesignScalar factor =
+      term.direction != 0 ? place.mu * DesignScalar(term.direction) : law.coefficient(motion.slip);
+  return factor * law.pressing(motion, lambda_);
 }
 
 bool PhaseTranspose::find_terms(const Point& point) {

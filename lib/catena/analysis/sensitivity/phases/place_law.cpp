@@ -35,9 +35,10 @@ DesignScalar PlaceLaw::row_factor(const DesignScalar& gap) const {
   return DesignScalar(1.0) - DesignScalar(2.0) * gap / place.range;
 }
 
-DesignScalar PlaceLaw::slip_sign(const DesignScalar& slip) const {
-  if (point.is_exact()) return DesignScalar(state.direction);
-  return tanh(slip / place.smoothing);
+DesignScalar PlaceLaw::coefficient(const DesignScalar& slip) const {
+  if (state.tied) return DesignScalar(-state.held);
+  if (point.is_exact()) return place.mu * DesignScalar(state.direction);
+  return place.mu * tanh(slip / place.smoothing);
 }
 
 DesignScalar PlaceLaw::normal(const PlaceMotion& motion, std::span<const DesignScalar> lambda) const {

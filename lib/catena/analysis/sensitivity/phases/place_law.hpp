@@ -28,11 +28,15 @@ struct PlaceLaw {
   int gap_row = -1, slide_row = -1;  ///< of the plan; -1: none
   int joint_row = -1;                ///< the first one of the joint whose reaction presses
   bool has_moment = false;           ///< the second one is a moment
+  int master_row = -1;               ///< of the slide whose friction that of this place follows (same_slides.hpp)
 
   /// Whether exact friction sticks; whether friction acts that is not that of sticking.
-  bool sticks() const { return point.has_friction() && point.is_exact() && state.closed && state.direction == 0; }
+  bool sticks() const {
+    return point.has_friction() && point.is_exact() && state.closed && state.direction == 0 && !state.tied;
+  }
   bool slides() const {
-    return point.has_friction() && state.closed && point.mu != 0 && (!point.is_exact() || state.direction != 0);
+    if (!point.has_friction() || !state.closed) return false;
+    return state.tied || (point.mu != 0 && (!point.is_exact() || state.direction != 0));
   }
 
   /// Which parts of its motion its forces follow from.
@@ -47,9 +51,14 @@ struct PlaceLaw {
   DesignScalar row_factor(const DesignScalar& gap) const;
   /// Its derivative by the gap.
   double row_bend() const { return place.has_range ? -2 / place.range.v : 0; }
-  DesignScalar slip_sign(const DesignScalar& slip) const;
+  /// mu sigma; of a joint that others keep from slipping its part of N, or of what it follows, which stays.
+  DesignScalar coefficient(const DesignScalar& slip) const;
   /// N; `lambda` by rows of the plan. The motion counts for compliant places alone.
   DesignScalar normal(const PlaceMotion& motion, std::span<const DesignScalar> lambda) const;
+  /// What friction that does not stick is a part of: N, or the friction that it follows.
+  DesignScalar pressing(const PlaceMotion& motion, std::span<const DesignScalar> lambda) const {
+    return master_row < 0 ? normal(motion, lambda) : -lambda[static_cast<std::size_t>(master_row)];
+  }
   /// What is zero where a phase of the place ends; see ContactPhases.
   DesignScalar end_value(const PlaceMotion& motion, std::span<const DesignScalar> lambda, PhaseEnd ends) const;
   /// Whether the place is beyond that end by more than rounding; `length` of the mechanism, `speed`: its fastest.
