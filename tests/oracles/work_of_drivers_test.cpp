@@ -36,9 +36,9 @@ std::string pull(const std::string& type) {
   return R"({"type": ")" + type + R"(", "i": ["b", [0.3, 0]], "j": ["ground", [0.1, 0.6]], "length": 0.5, "k": 200})";
 }
 
-std::string motion(const std::string& method, double until, double every) {
-  return R"({"type": "dynamics", "until": )" + text_of(until) + R"(, "every": )" + text_of(every) + R"(, "method": ")" +
-         method + R"("}]})";
+std::string motion(const std::string& method, double until, double every, double tolerance = 1e-8) {
+  return R"({"type": "dynamics", "until": )" + text_of(until) + R"(, "every": )" + text_of(every) +
+         R"(, "tolerance": )" + text_of(tolerance) + R"(, "method": ")" + method + R"("}]})";
 }
 
 TEST(WorkOfDrivers, OfOneWheelAtASpringOrACable) {
@@ -82,17 +82,19 @@ TEST(WorkOfDrivers, OfAChainThatIsTurnedFromRest) {
     pins += std::string(k > 0 ? ", " : "") + R"({"type": "revolute", "i": ")" +
             (k > 0 ? "l" + std::to_string(k - 1) + ".to" : "ground") + R"(", "j": ")" + name + R"(.from"})";
   }
-  for (const std::string method : {"auto", "rk5", "radau", "partitioning"}) {
+  for (const std::string method : {"auto", "rk8", "rk5", "adams", "alpha", "radau", "partitioning"}) {
     SCOPED_TRACE(method);
+    const bool is_coarse = method == "alpha";  // of order 2
     const TextRun run = run_text(R"({"catena": 1, "bodies": {)" + bodies + R"(}, "constraints": [)" + pins +
                                  R"(], "drivers": [{"type": "absolute_angle", "name": "D", "i": "l0", "value": {"law":
         {"type": "cycloidal", "t0": 0.2, "t1": 0.8, "from": 0, "to": 0.3}}}],
       "outputs": ["D.work", "energy.kinetic"], "analyses": [)" +
-                                 motion(method, 1, 0.1));
+                                 motion(method, 1, 0.1, is_coarse ? 1e-5 : 1e-8));
     ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message << run.outcome.error_text;
     const std::vector<double> work = run.column("D.work"), kinetic = run.column("energy.kinetic");
     const double most = *std::max_element(kinetic.begin(), kinetic.end());
-    for (std::size_t k = 0; k < work.size(); ++k) EXPECT_NEAR(work[k], kinetic[k], 1e-6 * most) << k;
+    for (std::size_t k = 0; k < work.size(); ++k)
+      EXPECT_NEAR(work[k], kinetic[k], (is_coarse ? 1e-4 : 1e-6) * most) << k;
   }
 }
 

@@ -57,10 +57,8 @@ void BalanceWatch::begin(const Snapshot& start, const MassMatrix& masses, double
   weight_ *= std::hypot(model.gravity.x, model.gravity.y) * length_;
   t_ = start.t;
   squared_times_ = 0;
-  inverse_mass_.assign(static_cast<std::size_t>(start.evaluator.plan().coordinates()), 0.0);
-  for (std::size_t c = 0; c < masses.mass.size(); ++c) {
-    if (masses.mass[c] > 0) inverse_mass_[c] = 1 / masses.mass[c];
-  }
+  mass_.assign(static_cast<std::size_t>(start.evaluator.plan().coordinates()), 0.0);
+  std::copy(masses.mass.begin(), masses.mass.end(), mass_.begin());
 }
 
 void BalanceWatch::observe(const Snapshot& state) {
@@ -76,7 +74,15 @@ void BalanceWatch::observe(const Snapshot& state) {
   missing_ = kinetic + potential - initial_ - (work_known_ ? state.work - state.dissipated : 0);
 }
 
-Report BalanceWatch::check(double t, std::span<const double> loads) const {
+// What velocities, of which a motion that sets out has hardly any, are not known to, J.
+double BalanceWatch::unknown_of_velocities(std::span<const double> accelerations) const {
+  double work = 0;
+  for (std::size_t c = 0; c < std::min(mass_.size(), accelerations.size()); ++c)
+    work += mass_[c] * std::abs(accelerations[c]) * (c % 3 == 2 ? 1 : length_);
+  return permitted * tolerance_ * std::sqrt(largest_kinetic_ * work);
+}
+
+Report BalanceWatch::check(double t, std::span<const double> loads, std::span<const double> accelerations) const {
   Report report;
   // Energies that are not finite cannot be checked; the integration then ends by itself.
   if (!std::isfinite(missing_)) return report;
@@ -91,11 +97,12 @@ Report BalanceWatch::check(double t, std::span<const double> loads) const {
     const bool turns = c % 3 == 2;
     most = std::max(most, std::abs(loads[c]) * (turns ? 1 : length_));
     all += std::abs(loads[c]) / (turns ? length_ : 1);
-    free += std::abs(loads[c]) * inverse_mass_[c] * (turns ? length_ : 1);
+    if (mass_[c] > 0) free += std::abs(loads[c]) / mass_[c] * (turns ? length_ : 1);
   }
   // Places are known to tolerance x length scale, on which loads work: what a motion that has hardly begun may be wrong
   // by.
-  const double unknown = (tolerance_ + rounding) * most + rounding_of_balance * free * all * squared_times_;
+  const double unknown = (tolerance_ + rounding) * most + rounding_of_balance * free * all * squared_times_ +
+                         unknown_of_velocities(accelerations);
   if (std::abs(missing_) <= allowed + unknown) return report;
   report.status = Status::not_converged;
   report.message = fmt::format(

@@ -15,6 +15,14 @@
 // Of a stack of ten that is pushed for 40 s the balance missed 6e-9 J, a ninth of this; of twenty for 100 s a fifth.
 // Where bodies move this is 16 eps of what they could gain in free fall.
 //
+// A motion that sets out from rest is judged by what its forces do besides its energy, which is next to nothing then:
+// velocities are known to tolerance x sqrt(a L) (error_scale.hpp), a: accelerations, be they due to loads or to drivers
+//
+//   start from rest:             permitted x tolerance x sqrt(largest T x sum M |a| L)
+//
+// Chains of twelve that a driver starts with a jerk miss 1e-7 of their first 1e-27 J at a tolerance of 1e-10, and 1e-3
+// of 1e-11 J at 1e-4: 1e-5 and 1e-4 of this. The root keeps it small where accelerations grow at a singular position.
+//
 // Errors of positions and velocities of `tolerance` (of the scale of the motion) change the energy by a few times
 // tolerance x (T + V); a motion with a much larger error of energy is wrong. No check is possible where forces without
 // a potential act and their work is not summed up. Units: J.
@@ -45,15 +53,17 @@ class BalanceWatch {
   /// Records the energy of a state of the motion, at the configuration of its evaluator.
   void observe(const Snapshot& state);
   /// not_converged, with figures, where energy was lost or gained at the last state by more than is allowed; `loads`:
-  /// generalized forces near there, whose work in the rounding of places none can know.
-  Report check(double t, std::span<const double> loads) const;
+  /// generalized forces near there, whose work in the rounding of places none can know; accelerations there.
+  Report check(double t, std::span<const double> loads, std::span<const double> accelerations) const;
 
  private:
+  double unknown_of_velocities(std::span<const double> accelerations) const;
+
   double tolerance_ = 0, initial_ = 0, missing_ = 0, largest_kinetic_ = 0, least_potential_ = 0, largest_potential_ = 0;
   double earlier_ = 0, weight_ = 0;  // of all bodies, times the length scale: V is zero by chance alone
   double length_ = 1;
   double t_ = 0, squared_times_ = 0;  // of the latest state, s; sum of (time between states)^2, s^2
-  std::vector<double> inverse_mass_;  // by coordinate; massless: 0
+  std::vector<double> mass_;          // by coordinate
   bool work_known_ = false, drifts_ = false;
 };
 

@@ -147,7 +147,7 @@ Report Dynamics::check_balance() {
 
 // Right before a dead point energies grow without bound, and with them what rounding leaves of their balance.
 Report Dynamics::judge_balance(double t) {
-  Report balance = work_.balance->check(t, equations_.applied_forces());
+  Report balance = work_.balance->check(t, equations_.applied_forces(), under_way_.integrator->accelerations());
   if (balance.ok()) return balance;
   if (std::optional<Report> locked = lock_up_ahead()) return *locked;
   return balance;

@@ -10,7 +10,10 @@
 // time scale 1/V grows no faster than time itself: where a mechanism rests for an instant its velocities keep a scale.
 //
 // E, in J: the largest kinetic energy so far, at the start also the work of the accelerations over a length L. It
-// bounds the velocity of each body, so that beside a fast light part the velocity of a heavy one still counts.
+// bounds the velocity of each body, so that beside a fast light part the velocity of a heavy one still counts. The
+// start is over when the motion has come further than what counts as nothing, tolerance^(1/2) radians of V: a driver
+// whose acceleration grows from zero moves next to nothing in a first step, and velocities would be asked for to a part
+// of that. Errors of work are compared with the energy alone.
 //
 // Rounding: accelerations are not known better than to 4 eps min(A, F / m), A the largest |Q| / m, F the largest force,
 // which constraints transmit. The resulting errors of velocities and positions in a step of size h are ignored: where
@@ -92,7 +95,7 @@ class ErrorScale {
   }
   double velocity_unit(std::size_t c, double h, double v) const {
     const double unit = c % 3 == 2 ? 1 : length;
-    return tolerance_ * (std::min(rate_ * unit, root_energy_ * speed_[c]) + std::abs(v)) +
+    return tolerance_ * (std::min(rate_ * unit, std::max(root_energy_, root_of_start_) * speed_[c]) + std::abs(v)) +
            std::abs(h) * rounding(c) * unit;
   }
   /// Where EnergyAccount has the work of the loads among its integrals; errors are judged of this one and of the first,
@@ -151,10 +154,11 @@ class ErrorScale {
     measure_loads(loads.first(qd.size()), force_, acceleration_);
     const double condition = 1 / std::max(pivot_ratio, dependence::refined);
     condition_ = rate_ * rate_ <= condition * thresholds::few_roundings * acceleration_ ? condition : 1;
-    if (step == 0) {
+    if (step == 0 || radians_ * radians_ < step_tolerance) {
       double energy = 0;
       for (std::size_t c = 0; c < qd.size(); ++c) energy += mass_[c] * std::abs(qdd[c]) * (c % 3 == 2 ? 1 : length);
-      root_energy_ = std::max(root_energy_, std::sqrt(energy));
+      double& root = step == 0 ? root_energy_ : root_of_start_;
+      root = std::max(root, std::sqrt(energy));
     }
     radians_ += rate_ * std::abs(step);
     const double part = std::min(1.0, brief_run / (radians_ + rate_ * std::max(horizon - t, 0.0)));
@@ -205,6 +209,7 @@ class ErrorScale {
   static constexpr double work_part = 50;
   static constexpr double brief_run = 200, least_tolerance = 1e-15;
   double rate_ = 0, root_energy_ = 0, radians_ = 0, tolerance_ = 0;
+  double root_of_start_ = 0;                         // of the work of the accelerations behind the first instant
   double place_tolerance_ = 0, place_rounding_ = 0;  // of lengths, in parts of L
   double strict_ = 0, factor_ = 1, power_ = 1;
   double condition_ = 1;
