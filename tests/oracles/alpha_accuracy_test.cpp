@@ -1,5 +1,5 @@
-// alpha judges each step by itself, so that motions of many radians may be off by more than ten tolerances: a warning
-// tells by how many, and none is given where they are not. Closed forms.
+// Motions of many radians may be off by more than ten tolerances, of alpha, which judges each step by itself, and of
+// order 5: a warning tells by how many, and none is given where they are not. Closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,32 +62,50 @@ TEST(AlphaAccuracy, IsSaidNotToBeKnownWithoutASecondRun) {
 }
 
 // A Kepler ellipse of semi-axes 1 and 0.8: x = cos E - 0.6, y = 0.8 sin E, t = E - 0.6 sin E; rows at even E.
-TEST(AlphaAccuracy, OfAKeplerEllipseIsTold) {
+TextRun ellipse(const std::string& method, const std::string& tolerance, int turns) {
   std::string instants;
-  for (int k = 1; k <= 16; ++k) {
+  for (int k = 1; k <= 16 * turns; ++k) {
     const double e = k * std::numbers::pi / 8;
     instants += (k > 1 ? ", " : "") + text_of(e - 0.6 * std::sin(e));
   }
-  const auto run_with = [&](const std::string& method, const std::string& tolerance) {
-    return run_text(
-        R"({"catena": 1, "bodies": {"p": {"particle": true, "mass": 1, "position": [0.4, 0], "velocity": [0, 2]}},
+  return run_text(
+      R"({"catena": 1, "bodies": {"p": {"particle": true, "mass": 1, "position": [0.4, 0], "velocity": [0, 2]}},
         "forces": [{"type": "point_force", "i": "p",
                     "force": ["=-p.x/(p.x^2+p.y^2)^1.5", "=-p.y/(p.x^2+p.y^2)^1.5"]}], "outputs": ["p.x", "p.y"],
         "analyses": [{"type": "dynamics", "method": ")" +
-        method + R"(", "at": [)" + instants + R"(], "tolerance": )" + tolerance + "}]}");
-  };
-  const TextRun run = run_with("alpha", "1e-5");
-  ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
+      method + R"(", "at": [)" + instants + R"(], "tolerance": )" + tolerance + "}]}");
+}
+
+double error_of_ellipse(const TextRun& run) {
   const std::vector<double> x = run.column("p.x"), y = run.column("p.y");
-  ASSERT_EQ(x.size(), 16U);
   double most = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
     const double e = static_cast<double>(k + 1) * std::numbers::pi / 8;
     most = std::max({most, std::abs(x[k] - std::cos(e) + 0.6), std::abs(y[k] - 0.8 * std::sin(e))});
   }
-  EXPECT_GT(most, 200e-5);
+  return most;
+}
+
+TEST(AlphaAccuracy, OfAKeplerEllipseIsTold) {
+  const TextRun run = ellipse("alpha", "1e-5", 1);
+  ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
+  EXPECT_GT(error_of_ellipse(run), 200e-5);
   EXPECT_GT(told(run), 200);
-  EXPECT_TRUE(run_with("radau", "1e-5").analysis().report.warnings.empty());
+  EXPECT_TRUE(ellipse("radau", "1e-5", 1).analysis().report.warnings.empty());
+}
+
+// Of rk5 the digits follow from the error that is carried along, and the word from a second run.
+TEST(AlphaAccuracy, OfThreeTurnsByOrder5IsTold) {
+  for (const std::string tolerance : {"1e-5", "1e-7"}) {
+    SCOPED_TRACE(tolerance);
+    const TextRun run = ellipse("rk5", tolerance, 3);
+    ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
+    const double off = error_of_ellipse(run) / std::stod(tolerance);
+    EXPECT_GT(off, 20);
+    EXPECT_NEAR(told(run), off, off / 2);
+    for (const std::string other : {"rk8", "adams"})
+      EXPECT_TRUE(ellipse(other, tolerance, 3).analysis().report.warnings.empty()) << other;
+  }
 }
 
 }  // namespace

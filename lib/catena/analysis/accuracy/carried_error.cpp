@@ -191,6 +191,16 @@ bool CarriedError::at_instant(double t, std::span<double> error) const {
   return true;
 }
 
+double CarriedError::norm_of_places(std::span<const double> error) const {
+  const double length = motion_.length_scale();
+  double largest = 0;
+  for (std::size_t c = 0; c < moving_; ++c) {
+    const double size = std::abs(error[c]) / unit_of(c, length);
+    if (!(size <= largest)) largest = size;
+  }
+  return largest;
+}
+
 double CarriedError::norm(std::span<const double> error) const {
   const double length = motion_.length_scale(), rate = rate_ > 0 ? 1 / rate_ : 0;
   double largest = 0;

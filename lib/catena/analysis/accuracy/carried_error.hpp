@@ -39,6 +39,8 @@ class CarriedError final : public StepFollower {
   bool at_instant(double t, std::span<double> error) const;
   /// Largest entry: places in length scales or rad, rates in those times the rate of the motion.
   double norm(std::span<const double> error) const;
+  /// Of places alone, in length scales or rad.
+  double norm_of_places(std::span<const double> error) const;
   /// m, of the mechanism.
   double length() const { return motion_.length_scale(); }
   /// 1/s, of the motion.

@@ -58,6 +58,7 @@ void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> valu
   row_.values.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(columns_.size()));
   row_.error.resize(2 * row_.q.size());
   if (!carried_.at_instant(row_.t, row_.error)) return;
+  places_ = std::max(places_, carried_.norm_of_places(row_.error));
   keep();
   keep_sharpest(snapshot.qdd);
   const double size = carried_.norm(row_.error);
@@ -122,6 +123,8 @@ const ColumnErrors* MotionAccuracy::errors(const AnalysisReport& report) {
   }
   return &errors_;
 }
+
+double MotionAccuracy::error_of_places() const { return carried_.lost() ? unknown : places_; }
 
 // What forces and gamma change by from t to t (1 + size eps); the evaluator is left there.
 void MotionAccuracy::add_change_with_time(double t, double size, std::span<double> gamma) {

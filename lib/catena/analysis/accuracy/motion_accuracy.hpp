@@ -43,6 +43,8 @@ class MotionAccuracy final : public RowAccuracy {
   std::string why_none() const override;
   /// Of the columns of a run that ended so; nullptr: nothing is known.
   const ColumnErrors* errors(const AnalysisReport& report);
+  /// Largest error of places of all rows, in length scales or rad; NaN: not known.
+  double error_of_places() const;
   /// Digits as they are claimed: none where errors have no effect in proportion any more.
   static std::vector<double> claimed(const ColumnErrors& errors);
 
@@ -78,6 +80,7 @@ class MotionAccuracy final : public RowAccuracy {
     bool is_last = false;  // whether that is the last row so far
   } examined_;
   RowTerms terms_;
+  double places_ = 0;            // error_of_places() so far
   bool curves_;                  // of rows before the last it is not known where they touched
   bool timed_;                   // something depends on time, and rows before the last are looked at
   bool finds_instants_ = false;  // some rows lie at instants that the motion decides on

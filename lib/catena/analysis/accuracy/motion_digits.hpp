@@ -44,6 +44,21 @@ inline bool has_adaptive_implicit_steps(IntegrationMethod method) {
   return method == IntegrationMethod::radau || method == IntegrationMethod::alpha;
 }
 
+/// Whether a method that was asked for keeps to its tolerance less surely than order 8 does. Of rk5 places were 34
+/// tolerances off after three turns of a Kepler ellipse.
+inline bool may_be_off(const DynamicsOptions& options) {
+  return options.step == 0 && (options.method == IntegrationMethod::rk5 || options.method == IntegrationMethod::adams ||
+                               has_adaptive_implicit_steps(options.method));
+}
+/// Whether the error that was carried along does not tell that a motion keeps to it: claims are optimistic by up to 7.
+template <class Analysis>
+bool is_doubtful(const RowAccuracy& carried, double tolerance) {
+  if constexpr (std::is_same_v<Analysis, DynamicsOfIslands>)
+    return true;
+  else
+    return !(static_cast<const MotionAccuracy&>(carried).error_of_places() <= 2 * tolerance);
+}
+
 /// Of the error that is carried along with it.
 template <class Analysis>
 std::unique_ptr<RowAccuracy> carried_accuracy(Analysis& analysis, const ColumnSet& columns,
@@ -81,14 +96,19 @@ std::unique_ptr<RowAccuracy> accuracy_of_motion(Analysis& analysis, const Column
   const bool wants_second = motion.changes || carries_no_error(method);
   const bool may_turn = motion.options.method == IntegrationMethod::automatic && motion.options.may_turn_implicit &&
                         motion.options.step == 0;
-  if (!wants_second && !may_turn) return carried_accuracy(analysis, columns, motion.sources);
-  const bool is_checked = has_adaptive_implicit_steps(method) && motion.options.step == 0;
+  const bool may_doubt = may_be_off(motion.options);
+  if (!wants_second && !may_turn && !may_doubt) return carried_accuracy(analysis, columns, motion.sources);
+  const bool is_checked = may_doubt || (has_adaptive_implicit_steps(method) && motion.options.step == 0);
   auto runs = std::make_unique<SecondRun>(
       columns, SecondRun::Runs{first, second, proceed, is_checked ? motion.options.tolerance : 0},
       method == IntegrationMethod::baumgarte);
   if (wants_second) return runs;
-  return std::make_unique<AccuracyByChoice>(carried_accuracy(analysis, columns, motion.sources), std::move(runs),
-                                            turned, is_smooth);
+  auto carried = carried_accuracy(analysis, columns, motion.sources);
+  const auto may_repeat = [may_turn, is_smooth] { return may_turn && is_smooth(); };
+  const auto doubted = [may_doubt, &carried = *carried, tolerance = motion.options.tolerance] {
+    return may_doubt && is_doubtful<Analysis>(carried, tolerance);
+  };
+  return std::make_unique<AccuracyByChoice>(std::move(carried), std::move(runs), turned, may_repeat, doubted);
 }
 
 }  // namespace catena

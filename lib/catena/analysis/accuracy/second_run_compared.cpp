@@ -104,8 +104,8 @@ void SecondRun::compare_with_tolerance(const OtherRows& other, double tolerance)
   if (multiple <= EstimatedError::largest_multiple) return;
   doubt_ = fmt::format(
       "the motion is off by some {:.2g} tolerances: {:.2g} length scales or rad, by a run at tolerance {:.3g}; errors "
-      "of phase add up, as this method judges each step by itself; give a tolerance of {:.1g}, or another method, "
-      "unless small errors grow fast in this motion",
+      "of its steps add up to that; give a tolerance of {:.1g}, or another method, unless small errors grow fast in "
+      "this motion",
       multiple, multiple * runs_.tolerance, tolerance,
       std::max(DynamicsOptions::least_tolerance, EstimatedError::largest_multiple / 2 * runs_.tolerance / multiple));
 }
