@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -202,6 +203,48 @@ TEST(LatchedMotions, WhatLiesAtItsValueHasNotPassedIt) {
     for (const EventEntry& event : events_of(run)) EXPECT_TRUE(event.name != "passed" || event.t < 0.999) << direction;
     EXPECT_NEAR(run.last("b.y"), 0.1 + 2 * 0.2 - g * 0.04 / 2, 1e-7);
   }
+}
+
+// A wheel is locked two turns on, and springs count them: they hold the arm between both at two thirds of the wheel's
+// angle. What follows starts from there.
+TEST(LatchedMotions, WhatRestsAfterALockKeepsTheTurns) {
+  const TextRun run = run_text(fmt::format(R"({{"catena": 1, "bodies": {{
+      "w": {{"mass": 1, "inertia": 100, "angular_velocity": 10}}, "a": {{"mass": 1, "inertia": 100}}}},
+    "constraints": [{{"type": "revolute", "i": "ground", "j": "w"}}, {{"type": "revolute", "i": "ground", "j": "a"}},
+                    {{"type": "absolute_angle", "name": "lock", "i": "w", "value": 0.5}}],
+    "forces": [{{"type": "torsion_spring", "i": "w", "j": "a", "k": 2, "angle": 0}},
+               {{"type": "torsion_spring", "i": "ground", "j": "a", "k": 1, "angle": 0}}],
+    "outputs": ["w.angle", "a.angle"],
+    "analyses": [{{"type": "dynamics", "until": 3, "events": [
+        {{"name": "e", "when": "w.angle", "value": {}, "action": "engage", "element": "lock"}}]}},
+      {{"type": "equilibrium"}}, {{"type": "assemble"}}, {{"type": "dynamics", "until": 4}}]}})",
+                                           0.5 + 4 * std::numbers::pi));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  ASSERT_EQ(run.outcome.analyses.size(), 4U);
+  for (const std::size_t k : {1U, 2U, 3U}) {
+    SCOPED_TRACE(k);
+    EXPECT_NEAR(run.last("w.angle", k), 0.5 + 4 * std::numbers::pi, 1e-9);
+    if (k < 3) EXPECT_NEAR(run.last("a.angle", k), (1 + 8 * std::numbers::pi) / 3, 1e-9);
+  }
+}
+
+// A pinion meshes with its rack after two turns without it, and the rack's spring is slack where it is then.
+TEST(LatchedMotions, ARackRestsWhereThePinionHasMetIt) {
+  const TextRun run = run_text(fmt::format(R"({{"catena": 1, "bodies": {{
+      "p": {{"mass": 1, "inertia": 1, "position": [0, 0.1], "angular_velocity": -10}},
+      "r": {{"mass": 1, "inertia": 1}}}},
+    "constraints": [{{"type": "revolute", "i": "ground", "j": "p", "at": [0, 0.1]}},
+                    {{"type": "translational", "i": "ground", "j": "r", "axis_i": [1, 0]}},
+                    {{"type": "rack_pinion", "name": "mesh", "i": "r", "j": "p", "axis_i": [1, 0], "radius": 0.1}}],
+    "forces": [{{"type": "spring_damper", "i": ["ground", [-10, 0]], "j": "r", "k": 100, "length": 10}}],
+    "outputs": ["p.angle", "r.x"],
+    "analyses": [{{"type": "dynamics", "until": 3, "events": [
+        {{"name": "e", "when": "p.angle", "value": {}, "action": "engage", "element": "mesh"}}]}},
+      {{"type": "equilibrium"}}]}})",
+                                           -4 * std::numbers::pi));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(run.last("p.angle", 1), -4 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(run.last("r.x", 1), 0, 1e-9);
 }
 
 // A driver hands a wheel over to a hold at one radian, and the hold to a driver that turns it back.

@@ -24,6 +24,9 @@ constexpr bool counts_turns =
     std::is_same_v<E, RopePart<double>> || std::is_same_v<E, ElasticRope<double>> ||
     std::is_same_v<E, TorsionSpring<double>> || std::is_same_v<E, Bushing<double>> ||
     std::is_same_v<E, CustomForce<double>> || std::is_same_v<E, CustomConstraint<double>>;
+// A pinion that has turned is elsewhere on its rack.
+template <class E>
+constexpr bool turns_are_places = std::is_same_v<E, RackPinion<double>>;
 
 }  // namespace
 
@@ -41,6 +44,7 @@ bool drop_whole_turns(const Plan& plan, std::span<const double> start, std::span
         const int i = std::min(block.body_i[at(e)], plan.moving);
         const int j = E::bodies == 1 ? plan.moving : std::min(block.body_j[at(e)], plan.moving);
         groups.join(i, j);
+        if (turns_are_places<E>) groups.join(i, plan.moving);
       }
     }
   };

@@ -4,7 +4,8 @@
 //
 // Optimisers and displaced starts may reach an equilibrium after many turns; the pose is the same without them. Bodies
 // tied by angle rows, welds, gears, belts, racks, stops and springs against turning are turned back together, by the
-// turns of the first of them; those tied to the ground in this way keep their turns.
+// turns of the first of them; those tied to the ground in this way keep their turns, and so do racks and pinions, where
+// turns are places.
 #pragma once
 
 #include <span>

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 
+#include "catena/analysis/events/engaged_turns.hpp"
+#include "catena/analysis/events/engagement.hpp"
 #include "catena/analysis/events/first_actions.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/assembly/design/adjoint_mechanism.hpp"
 #include "catena/elements/all.hpp"
@@ -44,6 +47,31 @@ bool adjoint_is_cheaper(const AnalysisContext& context, bool has_phases) {
   return parameters > (has_phases ? phases_base : dynamics_base) + count + dynamics_integral * integrals;
 }
 
+/// The model whose values of what events have engaged are moved by the whole turns that bodies had made without it
+/// (engaged_turns.hpp), at the state where the analysis starts: springs and ropes may count these turns, and a rack
+/// lies elsewhere after them.
+std::shared_ptr<const Model> turned_to_bodies(std::shared_ptr<const Model> model, const AnalysisContext& context) {
+  const SystemState& state = context.state;
+  if (context.task.from_initial || state.held.empty() || state.q.empty() || !model) return model;
+  EvaluationWork work;
+  Evaluator evaluator(Plan::make(*model, {.released_elements = state.released}), *model, work);
+  evaluator.set_time(state.t);
+  const std::vector<double> q = configuration_of(evaluator, state);
+  std::shared_ptr<Model> turned;
+  for (const int element : state.held) {
+    const int turns = whole_turns_of(*model, element, residuals_of(evaluator, q, element));
+    if (turns == 0) continue;
+    if (!turned) turned = std::make_shared<Model>(*model);
+    turn_value(*turned, element, turns);
+  }
+  return turned ? turned : model;
+}
+
+/// Whether a motion with events does that by itself, and tells checkpoints of it.
+bool counts_turns_itself(std::string_view type) {
+  return type == "dynamics" || type == "kinematics" || type == "inverse_dynamics";
+}
+
 Report refuse(std::string message) {
   Report report;
   report.status = Status::refused;
@@ -63,6 +91,7 @@ AnalysisFunction analysis_function(std::string_view type) {
 
 void run_analysis(AnalysisContext& context, AnalysisResult& result) {
   const std::vector<int> before = context.task.from_initial ? std::vector<int>() : context.state.held;
+  if (!counts_turns_itself(context.task.type())) context.model = turned_to_bodies(context.model, context);
   analysis_function(context.task.type())(context, result);
   // One that has others inside has run these, and each of them has done so.
   if (!context.task.of.empty()) return;
@@ -74,7 +103,7 @@ void run_analysis(AnalysisContext& context, AnalysisResult& result) {
 std::shared_ptr<const Model> model_at(const AnalysisContext& context, int parameter, double value) {
   ParameterSeeds seeds = context.seeds;  // the last one of a parameter counts
   seeds.push_back({parameter, value});
-  return context.models->model(*context.task.table, seeds);
+  return turned_to_bodies(context.models->model(*context.task.table, seeds), context);
 }
 
 DesignModels designs_of(const AnalysisContext& context, int last, std::optional<ParameterSeed<double>> at) {
