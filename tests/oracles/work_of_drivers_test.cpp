@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
@@ -82,14 +83,17 @@ TEST(WorkOfDrivers, OfAChainThatIsTurnedFromRest) {
     pins += std::string(k > 0 ? ", " : "") + R"({"type": "revolute", "i": ")" +
             (k > 0 ? "l" + std::to_string(k - 1) + ".to" : "ground") + R"(", "j": ")" + name + R"(.from"})";
   }
-  for (const std::string method : {"auto", "rk8", "rk5", "adams", "alpha", "radau", "partitioning"}) {
-    SCOPED_TRACE(method);
+  const std::pair<std::string, double> runs[] = {{"auto", 1e-8},  {"rk8", 1e-8},   {"rk5", 1e-8},
+                                                 {"rk5", 1e-10},  {"adams", 1e-8}, {"adams", 1e-10},
+                                                 {"alpha", 1e-5}, {"radau", 1e-8}, {"partitioning", 1e-8}};
+  for (const auto& [method, tolerance] : runs) {
+    SCOPED_TRACE(method + " " + text_of(tolerance));
     const bool is_coarse = method == "alpha";  // of order 2
     const TextRun run = run_text(R"({"catena": 1, "bodies": {)" + bodies + R"(}, "constraints": [)" + pins +
                                  R"(], "drivers": [{"type": "absolute_angle", "name": "D", "i": "l0", "value": {"law":
         {"type": "cycloidal", "t0": 0.2, "t1": 0.8, "from": 0, "to": 0.3}}}],
       "outputs": ["D.work", "energy.kinetic"], "analyses": [)" +
-                                 motion(method, 1, 0.1, is_coarse ? 1e-5 : 1e-8));
+                                 motion(method, 1, 0.1, tolerance));
     ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message << run.outcome.error_text;
     const std::vector<double> work = run.column("D.work"), kinetic = run.column("energy.kinetic");
     const double most = *std::max_element(kinetic.begin(), kinetic.end());

@@ -11,9 +11,9 @@
 //
 // E, in J: the largest kinetic energy so far, at the start also the work of the accelerations over a length L. It
 // bounds the velocity of each body, so that beside a fast light part the velocity of a heavy one still counts. The
-// start is over when the motion has come further than what counts as nothing, tolerance^(1/2) radians of V: a driver
-// whose acceleration grows from zero moves next to nothing in a first step, and velocities would be asked for to a part
-// of that. Errors of work are compared with the energy alone.
+// start is over when the motion has come further than tolerance^(1/2) length scales, which is tolerance^(1/4) radians
+// of V: a driver whose acceleration grows from zero moves next to nothing in first steps, and velocities would be asked
+// for to a part of that. Errors of work are compared with the mean of both, as the balance is.
 //
 // Rounding: accelerations are not known better than to 4 eps min(A, F / m), A the largest |Q| / m, F the largest force,
 // which constraints transmit. The resulting errors of velocities and positions in a step of size h are ignored: where
@@ -116,7 +116,8 @@ class ErrorScale {
   /// for at a start where they grow from zero those of the beginning say nothing.
   double size_of_work(double error, const WorkInStep& work, std::span<const double> loads,
                       std::span<const double> qdd) const {
-    const double energy = root_energy_ * root_energy_ + std::max(std::abs(work.end), std::abs(work.end - work.begin));
+    const double energy = root_energy_ * std::max(root_energy_, root_of_start_) +
+                          std::max(std::abs(work.end), std::abs(work.end - work.begin));
     double allowed = loosened(work_part * step_tolerance) * energy;
     if (error > allowed) allowed = std::max(allowed, work_of_nothing(work.h, loads, qdd));
     return allowed > 0 ? error / allowed : 0;
@@ -154,7 +155,7 @@ class ErrorScale {
     measure_loads(loads.first(qd.size()), force_, acceleration_);
     const double condition = 1 / std::max(pivot_ratio, dependence::refined);
     condition_ = rate_ * rate_ <= condition * thresholds::few_roundings * acceleration_ ? condition : 1;
-    if (step == 0 || radians_ * radians_ < step_tolerance) {
+    if (step == 0 || std::pow(radians_, 4) < step_tolerance) {
       double energy = 0;
       for (std::size_t c = 0; c < qd.size(); ++c) energy += mass_[c] * std::abs(qdd[c]) * (c % 3 == 2 ? 1 : length);
       double& root = step == 0 ? root_energy_ : root_of_start_;
