@@ -251,7 +251,7 @@ void Descent::finish() {
   system_.advance(q_, change_, 1, 1);
   std::copy(next_lambda_.begin(), next_lambda_.end(), lambda_.begin());
   system_.move_to(q_);
-  polish(system_, q_, lambda_, outcome_);
+  polish(system_, q_, lambda_, outcome_, options_.tolerance);
   tell();
   const double force = std::max(system_.force_scale(lambda_), load_);
   outcome_.end = outcome_.exact                                 ? StaticEnd::minimum

@@ -52,7 +52,10 @@ bool first_tensions(StaticSystem& system, std::span<double> lambda) {
   return true;
 }
 
-void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome) {
+namespace {
+
+// Corrections with the factors at hand while they gain.
+void correct(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome) {
   std::vector<double> residual(at(system.plan().columns)), gap(at(system.plan().rows));
   KeptPlace before_step;
   const double force = system.force_size(), rounding = system.rounding_change();
@@ -90,6 +93,22 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
     now = then;
     if (next <= rounding && now <= multiple_of_rounding) return;
   }
+}
+
+}  // namespace
+
+// Along a motion that nothing resists a correction by K is a force that is rounding over a stiffness that is: it leads
+// far away, and what it would mend of constraints and other motions is lost with it. Under the shift it is short.
+void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome,
+            double tolerance) {
+  correct(system, q, lambda, outcome);
+  // Where forces balance coordinate by coordinate what is left of each is rounding: loads count as they were.
+  const double force = std::max(system.load_size(), system.force_scale(lambda));
+  const double met = std::max(tolerance, multiple_of_rounding * system.rounding_change());
+  if (outcome.residual <= tolerance * force && system.phi_norm() <= met) return;
+  const double stiffest = std::max(system.matrix().largest_stiffness(), system.force_size() / system.length());
+  system.fill(lambda, Curvature::exact, descent::suspicious_part * stiffest);
+  if (system.factorize().ok()) correct(system, q, lambda, outcome);
 }
 
 namespace {
@@ -194,7 +213,7 @@ bool NewtonSearch::is_solved(double change) {
   balanced_ = is_balanced(0);
   // One step ends a linear problem, whatever its length.
   if (change > descent::last_step && !(linear_ && outcome_.exact && is_small())) return false;
-  polish(system_, q_, lambda_, outcome_);
+  polish(system_, q_, lambda_, outcome_, options_.tolerance);
   force_ = system_.force_scale(lambda_);
   return is_small() || change <= last_change;
 }

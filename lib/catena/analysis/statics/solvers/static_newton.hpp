@@ -39,7 +39,9 @@ bool first_multipliers(StaticSystem& system, std::span<double> lambda, bool exac
 /// StaticSystem::foresee): springs begin without tension. One factorization. False if there is none.
 bool first_tensions(StaticSystem& system, std::span<double> lambda);
 
-/// Newton steps with the factors at hand until nothing is gained any more.
-void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome);
+/// Newton steps with the factors at hand until nothing is gained any more; where forces or constraints are then not met
+/// to `tolerance`, with those of a K that resists every motion a little.
+void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome,
+            double tolerance);
 
 }  // namespace catena
