@@ -45,6 +45,22 @@ TEST(EndlessLines, OfCarriagesThatNothingHolds) {
   expect_no_fault(1, size_of_test(40u, 2u), [](unsigned seed) { return fault_of(seed, false); });
 }
 
+// Two bodies that only each other and a stop beside them hold: they may turn about each other as they fall, which is no
+// straight line, but falling side by side is one; whatever is asked for besides, nothing else is searched for.
+TEST(EndlessLines, OfBodiesThatFallPastAStop) {
+  const TextRun run = run_text(
+      R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"a": {"mass": 1, "inertia": 0.4, "position": [0.2, -0.1]},
+      "b": {"mass": 2, "inertia": 0.4, "angle": -0.3}},
+      "drivers": [{"type": "displacement", "i": "b", "j": ["a", [-1.9, -0.3]], "axis_i": [-0.1, -1.3], "value": 1}],
+      "forces": [{"type": "stop", "column": "a.x", "k": 1.1, "min": -0.9},
+        {"type": "torsion_spring", "i": ["b", [-0.8, 0.7]], "j": ["a", [-0.1, -0.7]], "k": -1}],
+      "outputs": ["b.y"], "analyses": [{"type": "equilibrium", "find": 2}]})");
+  const Report& report = run.analysis().report;
+  EXPECT_EQ(report.status, Status::unbounded) << report.message;
+  EXPECT_NE(report.message.find("29.43 N move it without end along a straight line"), std::string::npos)
+      << report.message;
+}
+
 // A body that slides off its curve is held by nothing there: equilibrium and motion name the same cause.
 TEST(EndlessLines, OfABodyThatRunsOffTheEndOfItsCurve) {
   for (const std::string analysis : {R"("equilibrium")", R"("dynamics", "until": 1)"}) {

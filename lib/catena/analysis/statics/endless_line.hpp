@@ -4,7 +4,8 @@
 //   q(s) = q + s v,   Phi(q(s)) = 0,   V(q(s)) = V(q) - F s,   F > 0        v over columns, m and rad; s >= 0; F N
 //
 // v is what the unbalanced forces have in common with the motions without stiffness: bodies on straight guides that
-// nothing holds in their directions, wheels on which a torque acts. That it is such a line is tried out
+// nothing holds in their directions, wheels on which a torque acts. Where bodies turn along it, which is no straight
+// line, v is the way of those tied to each other, all moved alike. That it is such a line is tried out
 // (solvers/endless_fall.hpp).
 #pragma once
 

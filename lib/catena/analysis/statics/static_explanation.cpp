@@ -56,9 +56,10 @@ void describe_point(StaticSystem& system, const StaticAccuracy& a, double tolera
             : "; likely cause: a start far off, or an energy without a minimum nearby";
 }
 
-// A search that creeps along a line on which the energy falls without end: names the body that moves most on it.
+// A search that creeps along a line on which the energy falls without end: names the body that moves most on it. The
+// system has all gaps open.
 std::optional<Report> explain_creeping(StaticSystem& system, const std::vector<double>& start) {
-  if (!system.evaluator().conservative() || system.has_gaps()) return {};
+  if (!system.evaluator().conservative()) return {};
   // At the start, where rounding is least: far away it passes for a stiffness.
   std::vector<double> q = start;
   if (!restore_constraints(system, q)) return {};
@@ -169,15 +170,15 @@ Report explain_failure(StaticSystem& system, const StaticOutcome& outcome, const
             {}};
   }
   if (outcome.end == StaticEnd::unbounded) return explain_unbounded(system, start);
-  if (const std::optional<Report> creeping = explain_creeping(system, start)) return *creeping;
-  const std::vector<double> gap = gap_values(system);
-  system.close_gaps(std::vector<char>(gap.size(), 0));
-  Assembler assembler(system.evaluator());
-  std::vector<double> assembled = start;
-  if (const AssemblyOutcome assembly = assembler.assemble(assembled); !assembly.ok()) return assembly;
   Report report;
   report.status = Status::not_converged;
   describe_point(system, accuracy, tolerance, result.certificate, report);
+  const std::vector<double> gap = gap_values(system);
+  system.close_gaps(std::vector<char>(gap.size(), 0));
+  if (const std::optional<Report> creeping = explain_creeping(system, start)) return *creeping;
+  Assembler assembler(system.evaluator());
+  std::vector<double> assembled = start;
+  if (const AssemblyOutcome assembly = assembler.assemble(assembled); !assembly.ok()) return assembly;
   if (rope >= 0) {
     report.message +=
         fmt::format("; an end or a pulley of rope \"{}\" came to the circle of the next pulley, where it has no way",

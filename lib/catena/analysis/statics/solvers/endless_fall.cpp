@@ -28,7 +28,7 @@ bool falls_for_ever(StaticSystem& system, std::span<const double> q, std::span<c
   const double across = neutral_part * system.matrix().absolute_quadratic(direction);
   const double longest = std::cbrt(std::numeric_limits<double>::max()) / system.length();
   bool endless = force > 0 && std::isfinite(size);
-  std::vector<double> there;
+  std::vector<double> there, gaps;
   const std::vector<CurvePlace> places = system.evaluator().curve_places();
   for (double way = far * system.extent() / system.length(); endless && way < longest; way *= 2) {
     const double s = way / size;
@@ -38,6 +38,8 @@ bool falls_for_ever(StaticSystem& system, std::span<const double> q, std::span<c
     endless =
         system.phi_norm() <= std::max({descent::restored, 10 * system.rounding_change(), neutral_part * way * way}) &&
         std::abs(energy - system.energy() - force * s) <= bend * force * s + across * s * s / 2;
+    system.all_gaps(gaps);
+    endless = endless && std::all_of(gaps.begin(), gaps.end(), [](double gap) { return gap >= 0; });
   }
   system.evaluator().go_to_curve_places(places);
   system.move_to(q);

@@ -1,6 +1,7 @@
 // Whether an energy falls along a straight line for ever.
 //
-//   Phi(q + s v) = 0,   V(q + s v) = V(q) - F s,   F > 0        for all s > 0; v over columns, m and rad
+//   Phi(q + s v) = 0,   Psi(q + s v) >= 0,   V(q + s v) = V(q) - F s,   F > 0
+//   for all s > 0; v over columns, m and rad; Psi the gaps of one-sided elements
 //
 // Tried out at distances that double as far as numbers reach: what begins to hold anywhere shows beyond that place, by
 // an energy that differs from F s. v is known as well as motions without stiffness are told (free_motions.hpp): so much
