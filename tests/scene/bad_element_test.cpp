@@ -49,6 +49,9 @@ const BadScene elements[] = {
      "use absolute_x and absolute_y, or a revolute joint"},
     {"ZeroDistanceGiven", constraint(R"(§{"type": "coupler", "i": ["crank", [0.4, 0]], "j": "rod"})"),
      "a revolute joint"},
+    // 0.1 - 0.4 + 0.4 is not 0.1.
+    {"DistanceOfRounding", constraint(R"(§{"type": "coupler", "i": "crank", "j": "rod", "at": [0.1, 0.7]})"),
+     "a revolute joint"},
     {"NegativeDistance", constraint(R"({"type": "coupler", "i": "crank", "j": "rod", "value": §-1})"), "negative"},
     {"ValueAndLength", constraint(R"({"type": "coupler", "i": "crank", "j": "rod", "value": 1, "length": §1})"),
      "\"length\" is another name of \"value\""},

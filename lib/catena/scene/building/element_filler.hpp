@@ -1,8 +1,10 @@
 // Fills the members of an element type from the slots of its template: one function a type, made from its fields().
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "catena/elements/all.hpp"
@@ -185,6 +187,26 @@ void measure_value(ElementEntry<E, S>& entry, const Frame<S>& i, const Frame<S>&
   }
 }
 
+/// Whether a measured distance is rounding of the places that it lies between, of four operations each: its line has no
+/// direction then, and rank and motion would follow rounding.
+template <class E, class S>
+bool is_rounding(const ElementEntry<E, S>& entry, const Frame<S>& i, const Frame<S>& j) {
+  double size = 0;
+  const auto take_in = [&](const S& x, const S& y) {
+    size = std::max({size, std::abs(value_of(x)), std::abs(value_of(y))});
+  };
+  take_in(i.x, i.y);
+  take_in(j.x, j.y);
+  const auto look = [&](const auto& field) {
+    if constexpr (kind_of(std::remove_cvref_t<decltype(field)>{}) == FieldKind::point) {
+      const Vec2<S>& point = entry.element.*field.member;
+      take_in(point.x, point.y);
+    }
+  };
+  std::apply([&](const auto&... field) { (look(field), ...); }, E::fields());
+  return std::abs(value_of(entry.values[0].constant)) <= 4 * std::numeric_limits<double>::epsilon() * size;
+}
+
 template <class E, class S>
 void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bodies, const Vec2<S>* points) {
   BasicModel<S>& model = builder.model();
@@ -217,6 +239,9 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
     if (!filler.value_given()) {
       const auto [frame_i, frame_j] = given_frames<E>(model, entry.i, entry.j);
       measure_value<E, S>(entry, frame_i, frame_j);
+      if constexpr (HasSquaredValue<E>) {
+        if (is_rounding(entry, frame_i, frame_j)) entry.values[0].constant = S(0);
+      }
     }
     // A constraint whose value changes with time is a driver, whichever list it is in.
     if (entry.values[0].function >= 0) kind = ElementKind::driver;
