@@ -49,6 +49,7 @@ browser_packages=(
 check_packages=(
   clang clang-format
   libclang-rt-dev       # the sanitizers of clang
+  lld                   # links sanitized programs
 )
 
 case "${1:-}" in
