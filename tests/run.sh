@@ -61,7 +61,29 @@ run_ctest() {
 }
 
 release_build() {
-  build release -DCATENA_LONG_TESTS="$long" -DCATENA_BUILD_TESTS=ON -DCATENA_BUILD_BENCH=ON -DCATENA_WITH_PYTHON=ON
+  build release -DCATENA_LONG_TESTS="$long" -DCATENA_BUILD_TESTS=ON -DCATENA_BUILD_BENCH=ON -DCATENA_WITH_PYTHON=ON \
+    -DCATENA_WITH_MPI=AUTO
+}
+# Packages are unpacked by one processor. Where nothing is built yet, the library, which needs few of them, is compiled
+# meanwhile; what is sought anew afterwards, MPI among it, changes none of its files.
+packages_and_library() {
+  if [[ -e build/release/build.ninja ]]; then
+    apps/setup.sh "$packages"
+    return
+  fi
+  apps/setup.sh || return 1
+  local log status=0 others
+  log="$(mktemp)"
+  apps/setup.sh "$packages" >"$log" 2>&1 &
+  others=$!
+  {
+    cmake --preset release -DCATENA_BUILD_TESTS=OFF -DCATENA_BUILD_BENCH=OFF -DCATENA_WITH_MPI=OFF &&
+      cmake --build build/release --parallel "$jobs" --target catena
+  } || status=1
+  wait "$others" || status=1
+  cat "$log"
+  rm -f "$log"
+  return $status
 }
 release_tests() { run_ctest release --label-exclude '^(stress|fuzz|bench|browser)$'; }
 long_tests() { most_seconds=3600 run_ctest release --label-regex '^(stress|fuzz|bench|browser)$'; }
@@ -77,18 +99,20 @@ fuzzers_run() {
   ctest --test-dir build/fuzz --timeout $((${CATENA_FUZZ_SECONDS:-30} + 120)) --no-tests=error --label-regex '^fuzz$'
 }
 format() {
-  find lib apps tests \( -name '*.hpp' -o -name '*.cpp' \) -print0 | xargs -0 clang-format --dry-run --Werror &&
+  find lib apps tests \( -name '*.hpp' -o -name '*.cpp' \) -print0 |
+    xargs -0 -n 200 -P "$jobs" clang-format --dry-run --Werror &&
     echo "every source is formatted as .clang-format says"
 }
 
-stage "Debian packages" apps/setup.sh $packages
 if [[ "$mode" == --long ]]; then
+  stage "Debian packages" apps/setup.sh "$packages"
   stage "Release build" release_build
   stage "long tests" long_tests
   stage "build by clang, file by file" clang_build
   stage "fuzzers by clang" fuzzers_build
   stage "fuzzing" fuzzers_run
 else
+  stage "Debian packages, the library" packages_and_library
   if [[ "$mode" == --all ]]; then
     stage "format" format
     stage "sanitized build by clang" sanitized_build
