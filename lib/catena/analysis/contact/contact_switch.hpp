@@ -148,8 +148,8 @@ class ContactSwitch {
   void let_grips_go(std::vector<ContactState>& states);
   void tie_grips(const ContactProblem& problem, std::vector<ContactState>& states) const;
   void tie_joints(const ContactProblem& problem, std::vector<ContactState>& states) const;
-  void share_or_leave(double t, std::span<const double> qd, const std::vector<ContactState>& states,
-                      const Cause& cause, const ContactLoads& loads, ContactProblem& problem);
+  void share_or_leave(double t, std::span<const double> qd, const std::vector<ContactState>& states, const Cause& cause,
+                      const ContactLoads& loads, ContactProblem& problem);
   bool holds_below_limits(const ContactProblem& problem, const std::vector<ContactState>& states) const;
   void find_responses();
   void fill(ContactProblem& problem) const;
