@@ -224,7 +224,9 @@ TEST(LatchedMotions, WhatRestsAfterALockKeepsTheTurns) {
   for (const std::size_t k : {1U, 2U, 3U}) {
     SCOPED_TRACE(k);
     EXPECT_NEAR(run.last("w.angle", k), 0.5 + 4 * std::numbers::pi, 1e-9);
-    if (k < 3) EXPECT_NEAR(run.last("a.angle", k), (1 + 8 * std::numbers::pi) / 3, 1e-9);
+    if (k < 3) {
+      EXPECT_NEAR(run.last("a.angle", k), (1 + 8 * std::numbers::pi) / 3, 1e-9);
+    }
   }
 }
 
