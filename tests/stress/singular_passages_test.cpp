@@ -6,6 +6,7 @@
 // rad (integrators/branch_keeping.hpp). None may go straight on in silence. From 1e-8 on all turn; closer by motions
 // may go straight on and say so, or end with a status: shares of both are printed by distance and tolerance.
 #include <cstdlib>
+#include <map>
 
 #include "oracles/redundant_trials.hpp"
 #include "stress/cases.hpp"
@@ -21,7 +22,10 @@ void near_slider(RandomMechanism& m, double d, bool doubled) {
   m.body(crank);
   m.motion.places = [=](const JetCoordinates& z) {
     const JetPoint pin = turned(z[0], {crank, 0});
-    const Jet across = (1 / Real(rod)) * pin.y, along = sqrt((Jet{1} - across) * (Jet{1} + across));
+    const Jet across = (1 / Real(rod)) * pin.y, level = (1 / Real(rod)) * pin.x;
+    // 1 - across^2 as a sum of squares: as a difference it would leave no digits in the passage.
+    const Real part = Real(crank) / Real(rod), short_by = Real(rod) - Real(crank);
+    const Jet along = sqrt(level * level + Jet{short_by / Real(rod) * (1 + part)});
     const Jet angle{-std::atan2(across.f, along.f), -across.d / along.f,
                     -(across.dd + across.d * across.d * across.f / (along.f * along.f)) / along.f};
     return std::vector<JetPlace>{{turned(z[0], {crank / 2, 0}), z[0]},
@@ -47,9 +51,14 @@ void near_parallelogram(RandomMechanism& m, double d, bool doubled) {
     const JetPoint pin = turned(z[0], {crank, 0}), span = fixed_point({base, 0}) - pin;
     const Jet square = span.x * span.x + span.y * span.y;
     // Parts of the coupler along the span and across, times its length.
-    const Real c2 = Real(base) * base, b2 = Real(rocker) * rocker;
-    const Jet along = Real(0.5) * (square + Jet{c2 - b2}), four = Real(4 * c2) * square, twice = Real(2) * along;
-    const Jet across = Real(0.5) * sqrt(four - twice * twice);
+    const Real a = crank, b = rocker, c = base, short_by = b - a;
+    const Jet along = Real(0.5) * (square + Jet{c * c - b * b});
+    // 16 times the squared area of the triangle of span, coupler and rocker, (b + c)^2 - s^2 times s^2 - (b - c)^2,
+    // each without a difference of what is nearly alike in a flat position: 1 +- cos z by the half angle.
+    const JetPoint half_turn = turned(Real(0.5) * z[0], {1, 0});
+    const Jet open = Jet{short_by * (b + a + 2 * c)} + (4 * c * a) * (half_turn.x * half_turn.x);
+    const Jet folded = Jet{short_by * (2 * c - b - a)} + (4 * c * a) * (half_turn.y * half_turn.y);
+    const Jet across = Real(0.5) * sqrt(open * folded);
     const Jet over{1 / square.f, -square.d / (square.f * square.f),
                    (2 * square.d * square.d / square.f - square.dd) / (square.f * square.f)};
     const JetPoint coupler{over * (along * span.x - across * span.y), over * (along * span.y + across * span.x)};
@@ -108,34 +117,41 @@ TEST_P(SingularPassages, FollowTheKnownMotion) {
               passage_kinds[kind].name, doubled ? ", joints given twice" : "");
   for (const double distance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
     std::printf("  %.0e", distance);
+    // All tolerances at once: where the corner is narrow the reference takes longer than the runs.
+    struct Outcomes {
+      int wrong = 0, told = 0, refused = 0;
+    };
+    std::map<double, Outcomes> seen;
+    const auto note = [&](unsigned seed, IntegrationMethod method, double tolerance, const TrialOutcome& outcome) {
+      Outcomes& of = seen[tolerance];
+      of.wrong += outcome.wrong;
+      of.told += outcome.told;
+      of.refused += !outcome.ok;
+      show_refusal(seed, std::string(to_string(method)) +
+                             (outcome.wrong  ? " WRONG "
+                              : outcome.told ? " told "
+                                             : " ") +
+                             outcome.message + " ratio " + std::to_string(outcome.ratio));
+    };
+    TrialCounts counts;
+    run_known_trials([&](unsigned seed) { return std::optional(passage(kind, seed, distance, doubled)); }, first_case(),
+                     stress_cases(2), methods, tolerances, counts, note);
+    int runs = 0;
+    for (const auto& [method, count] : counts) runs += count.runs;
     for (const double tolerance : tolerances) {
-      TrialCounts counts;
-      const auto show = [&](unsigned seed, IntegrationMethod method, double, const TrialOutcome& outcome) {
-        show_refusal(seed, std::string(to_string(method)) +
-                               (outcome.wrong  ? " WRONG "
-                                : outcome.told ? " told "
-                                               : " ") +
-                               outcome.message + " ratio " + std::to_string(outcome.ratio));
-      };
-      run_known_trials([&](unsigned seed) { return std::optional(passage(kind, seed, distance, doubled)); },
-                       first_case(), stress_cases(2), methods, {tolerance}, counts, show);
-      int runs = 0, wrong = 0, told = 0, refused = 0;
-      for (const auto& [method, count] : counts) {
-        runs += count.runs;
-        wrong += count.wrong;
-        told += count.told;
-        refused += count.refused;
-      }
-      std::printf("  %.0e: %d/%d/%d/%d", tolerance, runs, wrong, told, refused);
+      const Outcomes& of = seen[tolerance];
+      std::printf("  %.0e: %d/%d/%d/%d", tolerance, runs / static_cast<int>(tolerances.size()), of.wrong, of.told,
+                  of.refused);
       if (distance >= told_apart) {
-        EXPECT_EQ(told, 0) << "at a distance of " << distance;
+        EXPECT_EQ(of.told, 0) << "at a distance of " << distance;
       }
-      EXPECT_EQ(wrong, 0) << "at a distance of " << distance << ", tolerance " << tolerance;
+      EXPECT_EQ(of.wrong, 0) << "at a distance of " << distance << ", tolerance " << tolerance;
     }
     std::printf("\n");
     std::fflush(stdout);
   }
 }
+
 /// What becomes of a passage with a motor on its crank, which turns evenly.
 struct DrivenOutcome {
   bool ok = false, told = false;
