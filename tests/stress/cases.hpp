@@ -3,6 +3,13 @@
 // CATENA_STRESS_CASES sets the number for every test that asks here, CATENA_STRESS_FIRST the first seed (1), and
 // CATENA_STRESS_KEEP a folder in which scenes are left, each by the name of its kind and its seed; with
 // CATENA_STRESS_SHOW set it is said of each case that was refused why.
+//
+// The usual numbers make some 155,000 cases, and 30,000 runs of known motions beside them, in about an hour of one core
+// and half of that on two. A kind has as many cases as some four minutes allow, ten thousand at most, by
+// its time a case, measured, ms: columns, networks of springs, paths' digits, statics 1 ... 8; kinematics, at rest,
+// schema 3 ... 20; mutated scenes 9; contacts, equilibria, gradients, invariance 6 ... 25; paths of particles 26;
+// motions against dense formulations 35 ... 65, by implicit methods 60; digits of motions 53, of methods that run twice
+// 150, of stiff ones 1400; stiff motions 2200.
 #pragma once
 
 #include <cstdio>
