@@ -63,12 +63,12 @@ void near_parallelogram(RandomMechanism& m, double d, bool doubled) {
                    (2 * square.d * square.d / square.f - square.dd) / (square.f * square.f)};
     const JetPoint coupler{over * (along * span.x - across * span.y), over * (along * span.y + across * span.x)};
     const JetPoint end = pin + coupler, arm = end - fixed_point({base, 0});
-    const auto angle_of = [](JetPoint a) {
-      const Real r2 = a.x.f * a.x.f + a.y.f * a.y.f, w = (a.x.f * a.y.d - a.y.f * a.x.d) / r2;
-      return Jet{std::atan2(a.y.f, a.x.f), w,
-                 (a.x.f * a.y.dd - a.y.f * a.x.dd - 2 * w * (a.x.f * a.x.d + a.y.f * a.y.d)) / r2};
+    const auto angle_of = [](const JetPoint& p) {
+      const Real r2 = p.x.f * p.x.f + p.y.f * p.y.f, w = (p.x.f * p.y.d - p.y.f * p.x.d) / r2;
+      return Jet{std::atan2(p.y.f, p.x.f), w,
+                 (p.x.f * p.y.dd - p.y.f * p.x.dd - 2 * w * (p.x.f * p.x.d + p.y.f * p.y.d)) / r2};
     };
-    const auto half = [](JetPoint a) { return JetPoint{Real(0.5) * a.x, Real(0.5) * a.y}; };
+    const auto half = [](const JetPoint& p) { return JetPoint{Real(0.5) * p.x, Real(0.5) * p.y}; };
     return std::vector<JetPlace>{{turned(z[0], {crank / 2, 0}), z[0]},
                                  {pin + half(coupler), angle_of(coupler)},
                                  {fixed_point({base, 0}) + half(arm), angle_of(arm)}};
