@@ -85,6 +85,30 @@ TEST(DrivenRopes, RopesThatWouldPushAreTold) {
   EXPECT_NEAR(run.last("load.y"), -20 - g * hoist.t * hoist.t / 2, 1e-7);
 }
 
+// A wheel that a table drives from rest, its rate zero but for rounding, beside a rack, a pinion and a rope whose rows
+// depend on each other: where their ranks are looked for, the table is not asked for.
+TEST(DrivenRopes, TablesThatBeginAtRestAreNotLeft) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -10], "bodies": {
+    "w1": {"mass": 0.5, "inertia": 0, "angle": -0.1}, "w2": {"mass": 2, "inertia": 0},
+    "load": {"particle": true, "mass": 3, "position": [0.1, -5]},
+    "rack": {"mass": 1, "inertia": 0.1, "position": [-0.2, 0.2], "angle": -3}}, "constraints": [
+    {"type": "revolute", "i": "ground", "j": "w1"},
+    {"type": "revolute", "i": ["ground", [-0.04888109690564071, -0.0247553321234035]], "j": "w2"},
+    {"type": "absolute_x", "i": "load"},
+    {"type": "translational", "i": ["ground", [-0.19481359685319077, 0.21388816720837428]],
+      "axis_i": [-0.85313, -0.5217], "j": "rack", "axis_j": [1, 0]},
+    {"type": "rack_pinion", "i": "rack", "axis_i": [1, 0], "j": "w2", "radius": 0.27972667787370215, "side": 1}],
+    "drivers": [{"type": "absolute_angle", "i": "w1", "value": {"spline": {"t": [0, 0.4, 1, 1.1, 2],
+      "value": [-0.07956344350289335, 1, -1, -1, 0.2], "end": "clamped"}}}],
+    "forces": [{"type": "rope", "i": ["w2", [-0.1, 0.1]], "over": [{"at": "w2", "radius": 0.1, "side": -1,
+      "pulley": "rolls"}], "j": "load"}],
+    "outputs": ["w1.angle"], "analyses": [{"type": "dynamics", "at": [0.4, 1]}]})");
+  ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
+  const auto angle = run.column("w1.angle");
+  EXPECT_NEAR(angle[0], 1, 1e-12);
+  EXPECT_NEAR(angle[1], -1, 1e-12);
+}
+
 // Two ropes on one load: which of them is taut is a question of forces, and the motion is not determined as before.
 TEST(DrivenRopes, RopesTooManyDetermineNothing) {
   const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {

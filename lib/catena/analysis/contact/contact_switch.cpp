@@ -72,6 +72,8 @@ Report ContactSwitch::prepare(std::span<const double> q) {
   Report report = equations_.use_masses();
   if (!report.ok()) return report;
   equations_.weigh_massless(q);
+  // Where ranks are looked for drivers go on as they do now: tables may end, and at rest their rates are rounding.
+  const Evaluator::TimeLimit limit(evaluator_, {evaluator_.time(), evaluator_.time()});
   redundant_.find(q);
   return equations_.check_massless(q);
 }

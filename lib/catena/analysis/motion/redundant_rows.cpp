@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "catena/analysis/pose/assemble.hpp"
-#include "catena/analysis/pose/departure.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/assembly/systems/row_spread.hpp"
 #include "catena/base/at.hpp"
@@ -248,20 +247,13 @@ bool RedundantRows::probe(std::span<const double> q, std::span<double> place) {
   for (int trial = 0; trial < most_probes; ++trial, distance /= 2) {
     equations_.factorize(t, Side::after, q);
     std::fill(move.begin(), move.end(), 0.0);
-    const auto size_of_move = [&] {
-      double size = 0;
-      for (int k : plan_.coordinate) size = std::max(size, std::abs(move[at(k)]) / unit(k));
-      return size;
-    };
-    bool driven = equations_.project_velocity(move, 0) > 0;
-    double size = size_of_move();
-    // Drivers at rest, whose rates are rounding, come so far after ages, and tables end.
-    driven = driven && functions_exist_at(evaluator, t + distance / size);
+    const bool driven = equations_.project_velocity(move, 0) > 0;
     if (!driven) {
       for (int k : plan_.coordinate) move[at(k)] = uniform(generator) * unit(k);
       equations_.remove_forbidden(std::span(move).first(at(3 * plan_.moving)));
-      size = size_of_move();
     }
+    double size = 0;
+    for (int k : plan_.coordinate) size = std::max(size, std::abs(move[at(k)]) / unit(k));
     if (!(size > 0)) continue;
     for (std::size_t k = 0; k < place.size(); ++k) place[k] = q[k] + distance / size * move[k];
     if (driven) evaluator.set_time(t + distance / size);
