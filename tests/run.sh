@@ -76,11 +76,13 @@ packages_and_library() {
   log="$(mktemp)"
   apps/setup.sh "$packages" >"$log" 2>&1 &
   others=$!
+  trap 'kill "$others" 2>/dev/null; exit 130' INT TERM
   {
     cmake --preset release -DCATENA_BUILD_TESTS=OFF -DCATENA_BUILD_BENCH=OFF -DCATENA_WITH_MPI=OFF &&
       cmake --build build/release --parallel "$jobs" --target catena
   } || status=1
   wait "$others" || status=1
+  trap - INT TERM
   cat "$log"
   rm -f "$log"
   return $status

@@ -36,10 +36,12 @@ void DynamicsMachine::use_model(std::shared_ptr<const Model> model) {
   };
   take();
   if (!row()) return;  // nothing was shown yet, so that nothing shown is of the parameters before
-  if (const AnalysisReport report = go({here.t}, nullptr); !report.ok()) {
+  try {
+    if (const AnalysisReport report = go({here.t}, nullptr); !report.ok()) throw StepError(report);
+  } catch (...) {
     take();
     state_ = here;
-    throw StepError(report);
+    throw;
   }
 }
 

@@ -108,8 +108,8 @@ AnalysisReport Machine::go(const std::vector<double>& times, ResultStorage* kept
     return report;
   }
   const ColumnSet& columns = resolved();
-  info_.assign(columns.info().begin(), columns.info().end());
-  notes_.assign(columns.notes().begin(), columns.notes().end());
+  shown_.info.assign(columns.info().begin(), columns.info().end());
+  shown_.notes.assign(columns.notes().begin(), columns.notes().end());
   SignalWatch signals;
   StepRows rows(columns, kept, signals);
   {
@@ -118,7 +118,7 @@ AnalysisReport Machine::go(const std::vector<double>& times, ResultStorage* kept
   }
   if (!rows.row().empty()) put(row_, rows.row());
   show_state();
-  warnings_ = report.warnings;
+  shown_.warnings = report.warnings;
   if (signals.interrupted()) throw py::error_already_set();
   return report;
 }
@@ -142,11 +142,16 @@ Analysis Machine::follow(const std::vector<double>& times) {
 void Machine::set(const std::map<std::string, double>& values) {
   const AtWork work(busy_);
   const ParameterSeeds before = scene_.changes();
+  const Shown shown = shown_;
+  const std::vector<double> row = row_ ? *row_ : std::vector<double>();
   scene_.set(values);
   try {
     use_model(scene_.model());
   } catch (...) {
     scene_.put_back(before);
+    shown_ = shown;
+    if (!row.empty()) put(row_, row);
+    show_state();
     throw;
   }
   show_state();

@@ -63,9 +63,9 @@ class Machine {
   const Numbers& qd() const { return qd_; }
   /// Values of the columns after the last step; empty before the first.
   const Numbers& row() const { return row_; }
-  std::span<const ColumnInfo> columns() const { return info_; }
-  const std::vector<std::string>& notes() const { return notes_; }
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  std::span<const ColumnInfo> columns() const { return shown_.info; }
+  const std::vector<std::string>& notes() const { return shown_.notes; }
+  const std::vector<std::string>& warnings() const { return shown_.warnings; }
   std::atomic<bool>& busy() const { return busy_; }
 
  protected:
@@ -94,8 +94,12 @@ class Machine {
 
   double t_ = 0;
   Numbers q_, qd_, row_;
-  std::vector<ColumnInfo> info_;
-  std::vector<std::string> notes_, warnings_;
+  /// Of the last step.
+  struct Shown {
+    std::vector<ColumnInfo> info;
+    std::vector<std::string> notes, warnings;
+  };
+  Shown shown_;
 };
 
 }  // namespace catena::python

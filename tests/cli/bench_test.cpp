@@ -399,7 +399,7 @@ TEST(Bench, CtrlCKeepsTheRowsSoFar) {
   EXPECT_EQ(result.exit_code, 1) << result.err;
   const json written = json::parse(std::ifstream(document));
   EXPECT_GE(written["rows"].size(), 1u);
-  EXPECT_LT(written["rows"].size(), 6u);
+  EXPECT_LT(written["rows"].size(), 15u);  // a whole run has so many
   expect_said(written["notes"].dump(), "stopped by a signal");
 }
 

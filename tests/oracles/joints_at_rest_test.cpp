@@ -22,12 +22,6 @@ struct Row {
   std::vector<double> limit;  // of joints; 0: a contact
 };
 
-std::string list(const std::vector<std::string>& entries) {
-  std::string text;
-  for (const std::string& entry : entries) text += (text.empty() ? "" : ",") + entry;
-  return text;
-}
-
 // `wheels`: on pins, tied by their angles; else slides and particles, tied along x.
 Row random_row(unsigned seed, bool wheels) {
   RandomNumbers random(seed);
@@ -76,8 +70,8 @@ Row random_row(unsigned seed, bool wheels) {
   std::string outputs = "\"" + row.rate + "\"";
   for (int k = 0; k < count; ++k) outputs += ",\"f" + std::to_string(k) + ".friction\"";
   const double until = row.begins + row.resting / std::abs(row.push) + 0.5;
-  row.scene = R"({"catena": 1, "gravity": [0, -9.81], "bodies": {)" + list(bodies) + R"(}, "constraints": [)" +
-              list(constraints) + R"(], "forces": [)" + list(forces) + R"(], "outputs": [)" + outputs +
+  row.scene = R"({"catena": 1, "gravity": [0, -9.81], "bodies": {)" + list_of(bodies) + R"(}, "constraints": [)" +
+              list_of(constraints) + R"(], "forces": [)" + list_of(forces) + R"(], "outputs": [)" + outputs +
               R"(], "analyses": [{"type": "dynamics", "until": )" + text_of(until) + R"(, "every": )" +
               text_of(until / 37) + "}]}";
   return row;

@@ -4,6 +4,7 @@
 #include <random>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace catena::testing {
 
@@ -14,6 +15,12 @@ inline std::string text_of(double x) {
   return out.str();
 }
 inline std::string pair_of(double x, double y) { return "[" + text_of(x) + "," + text_of(y) + "]"; }
+/// With commas between them.
+inline std::string list_of(const std::vector<std::string>& entries) {
+  std::string text;
+  for (const std::string& entry : entries) text += (text.empty() ? "" : ",") + entry;
+  return text;
+}
 
 /// Uniform numbers between two bounds, the same for the same seed.
 class RandomNumbers {

@@ -48,5 +48,34 @@ TEST(RunBuckling, GivesShapesOfNamedOutputs) {
   EXPECT_NEAR(run.first("low.angle"), 2 / (1 + std::sqrt(5.0)), 1e-10);
 }
 
+// A clamped chain of n rods and springs of 1000 N m/rad, the load along it: 4 c sin^2(pi / (4 n + 2)). Of 700 its
+// softest motion is told from rounding; of a thousand, 1e-12 of the stiffest, it is not, which is said in place of
+// other loads.
+TEST(RunBuckling, OfLongChainsGivesTheLowestLoadOrNone) {
+  const auto chain = [](int n) {
+    return run_text(R"({"catena": 1, "parameters": {"P": 0}, "bodies": {"b0": {"rod": {"from": [0, 0], "to": [1, 0]}}},
+      "constraints": [{"type": "revolute", "i": "ground", "j": "b0.from"}],
+      "forces": [{"type": "torsion_spring", "i": "ground", "j": "b0", "k": 1000},
+                 {"type": "point_force", "i": "b)" +
+                    std::to_string(n - 1) + R"(.to", "force": ["=-P", 0]}],
+      "replicate": [{"count": )" +
+                    std::to_string(n - 1) + R"(, "first": 1,
+        "bodies": {"b{k}": {"rod": {"from": ["=k", 0], "to": ["=k+1", 0]}}},
+        "constraints": [{"type": "revolute", "i": "b{k-1}.to", "j": "b{k}.from"}],
+        "forces": [{"type": "torsion_spring", "i": "b{k-1}", "j": "b{k}", "k": 1000}]}],
+      "analyses": [{"type": "buckling", "parameter": "P", "count": 2, "outputs": []}]})");
+  };
+  const TextRun told = chain(700), lost = chain(1000);
+  ASSERT_EQ(told.outcome.exit_code, 0) << told.outcome.error_text;
+  const auto loads = testing::field<std::vector<double>>(told, "loads");
+  ASSERT_EQ(loads.size(), 2u);
+  for (int k = 0; k < 2; ++k) {
+    const double sine = std::sin((2 * k + 1) * std::acos(-1.0) / (4 * 700 + 2)), right = 4000 * sine * sine;
+    EXPECT_NEAR(loads[static_cast<std::size_t>(k)], right, 1e-8 * right);
+  }
+  EXPECT_EQ(lost.analysis().report.status, Status::refused);
+  EXPECT_NE(lost.analysis().report.message.find("neutral"), std::string::npos) << lost.analysis().report.message;
+}
+
 }  // namespace
 }  // namespace catena

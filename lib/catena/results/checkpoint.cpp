@@ -13,7 +13,7 @@
 namespace catena {
 namespace {
 
-constexpr std::string_view kind = "catena checkpoint ", first_line = "catena checkpoint 7\n";
+constexpr std::string_view kind = "catena checkpoint ", first_line = "catena checkpoint 8\n";
 
 std::uint64_t sum_over(std::string_view text, std::uint64_t sum = 0xcbf29ce484222325u) {
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -28,7 +28,9 @@ auto parts(RopeTurns& turns) { return std::tie(turns.theta, turns.contact); }
 auto parts(CurvePlace& place) { return std::tie(place.element, place.s_i, place.s_j); }
 auto parts(RopeEvent& event) { return std::tie(event.element, event.met, event.t); }
 auto parts(SparseVectors& vectors) { return std::tie(vectors.start, vectors.index, vectors.value); }
-auto parts(IntegratorMemory& m) { return std::tie(m.step, m.rate, m.root_energy, m.radians, m.usual_ratio); }
+auto parts(IntegratorMemory& m) {
+  return std::tie(m.step, m.rate, m.root_energy, m.root_of_start, m.radians, m.usual_ratio);
+}
 auto parts(WorkSoFar& m) { return std::tie(m.supplied, m.dissipated, m.initial_energy, m.energy, m.by_driver); }
 auto parts(EventMemory& m) { return std::tie(m.released, m.turned, m.sides, m.largest, m.records, m.held); }
 auto parts(MotionMemory& m) {

@@ -196,7 +196,8 @@ double CarriedError::norm_of_places(std::span<const double> error) const {
   double largest = 0;
   for (std::size_t c = 0; c < moving_; ++c) {
     const double size = std::abs(error[c]) / unit_of(c, length);
-    if (!(size <= largest)) largest = size;
+    if (!std::isfinite(size)) return size;
+    largest = std::max(largest, size);
   }
   return largest;
 }

@@ -58,7 +58,7 @@ void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> valu
   row_.values.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(columns_.size()));
   row_.error.resize(2 * row_.q.size());
   if (!carried_.at_instant(row_.t, row_.error)) return;
-  places_ = std::max(places_, carried_.norm_of_places(row_.error));
+  if (const double off = carried_.norm_of_places(row_.error); std::isnan(off) || off > places_) places_ = off;
   keep();
   keep_sharpest(snapshot.qdd);
   const double size = carried_.norm(row_.error);

@@ -15,10 +15,9 @@
 namespace catena {
 namespace {
 
-// Friction of joints and their forces, in turns: each leaves a part r of the error, about mu; four thousand rounds
-// reach rounding where that part is up to 0.99. Where friction presses its own joint by more than itself, |r| > 1,
-// changes grow: N = |A + r N| has no solution then, or two.
-constexpr int most_rounds = 4000;
+// Of the speed that forces bring about over the length scale, as the motion's own where it has hardly moved: below
+// no_speed of it a rate is rounding of what the forces would make.
+constexpr double of_forces = thresholds::few_roundings / no_speed;
 
 }  // namespace
 
@@ -34,38 +33,18 @@ bool ContactSwitch::find_free_accelerations(double t, std::span<const double> q,
 // What presses a joint depends on the forces themselves: both are found in turns, from the forces that the problem has.
 Report ContactSwitch::press_joints(double t, std::span<const double> qd, const ContactLoads& loads,
                                    ContactProblem& problem) {
-  const std::span<const double> free = equations_.multipliers();
-  // The multipliers, and the sizes of the terms that they are sums of, for their rounding.
-  std::vector<double> lambda(free.size()), terms(free.size());
-  for (int round = 0; round < most_rounds; ++round) {
-    for (std::size_t r = 0; r < lambda.size(); ++r) {
-      lambda[r] = free[r];
-      terms[r] = std::abs(free[r]);
-      for (std::size_t c = 0; c < problem.x.size(); ++c) {
-        const double part = multipliers_[c][r] * problem.x[c];
-        lambda[r] += part;
-        terms[r] += std::abs(part);
-      }
-    }
-    double change = 0, size = 0;
-    for (std::size_t a = 0; a < active_.size(); ++a) {
-      ContactProblem::Place& place = problem.place[a];
-      if (place.has_normal || place.head >= 0) continue;
-      const double normal = std::max(loads.normal_from(active_[a], qd, lambda), 0.0);
-      const double limit = points_[active_[a]].mu_static * normal;
-      change = std::max(change, std::abs(limit - place.limit));
-      size = std::max(size, points_[active_[a]].mu_static * loads.normal_from(active_[a], qd, terms));
-      place.limit = limit;
-      place.kinetic = points_[active_[a]].mu * normal;
-    }
+  LimitShares shares;
+  for (int round = 0; round < most_settling; ++round) {
+    const Pressing pressing = press(qd, loads, problem);
     if (!problem.solve()) return wedged(t);
-    share_by_limits(problem);
-    if (change <= thresholds::sum_rounding * size) return {};
+    shares.share(problem);
+    if (pressing.is_settled()) return {};
   }
+  if (settle_by_states(qd, loads, problem)) return {};
   return failure(t, fmt::format("the friction of {} and the reactions that press there do not settle within {} rounds: "
                                 "friction that presses its own joint by more than itself leaves no force that fits, or "
                                 "several (Painleve)",
-                                names_of(*model_, points_, active_), most_rounds));
+                                names_of(*model_, points_, active_), most_settling));
 }
 
 // Which places press, stick and slide from now on.
@@ -81,6 +60,7 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
   if (!find_free_accelerations(t, q, qd, loads))
     return failure(t, loads.trouble().empty() ? "accelerations are not finite" : loads.trouble());
   sizes_.take(sizes_of_motion(evaluator_.length_scale(), qd, equations_.applied_forces(), equations_.masses().mass));
+  know_speed(of_forces * sizes_.speed);
   forget_shared();
   let_leave(t, states, cause);
   for (std::vector<std::size_t>& group : active_by_group()) {

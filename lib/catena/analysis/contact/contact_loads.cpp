@@ -85,7 +85,6 @@ double ContactLoads::normal_from(std::size_t k, std::span<const double> qd, std:
 
 void ContactLoads::add(std::span<const double> qd, std::span<double> loads) {
   lost_in_springs_ = 0;
-  speed_ = std::max(speed_, fastest(evaluator_, qd));
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const ContactPoint& point = points_[k];
     normal_[k] = friction_[k] = 0;

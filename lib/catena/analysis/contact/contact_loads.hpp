@@ -79,11 +79,9 @@ class ContactLoads final : public StateLoads {
   double normal_from(std::size_t k, std::span<const double> qd, std::span<const double> lambda) const;
   /// Scatters what presses, friction and slip to `loads`, one entry an element.
   void scatter(std::span<ContactLoad> loads) const;
-  /// The largest speed at which forces were asked for.
+  /// The largest speed that the motion has had. Forces are asked for at others as well: stages of steps that are too
+  /// long, and given up, may be faster by many powers of ten.
   double speed() const { return speed_; }
-  /// Forgets what was faster: after steps that were tried.
-  void set_speed(double speed) { speed_ = speed; }
-  /// Takes note of one before.
   void know_speed(double speed) { speed_ = std::max(speed_, speed); }
   /// Whether rigid places are closed, or exact friction holds or rubs: what a jump of velocities may end.
   bool holds() const { return holds_; }

@@ -4,6 +4,7 @@
 
 #include "catena/analysis/contact/contact_switch.hpp"
 #include "catena/analysis/contact/problem/same_slides.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 
@@ -36,7 +37,7 @@ void ContactSwitch::tie_joints(const ContactProblem& problem, std::vector<Contac
       const double limit = problem.place[a].limit, force = problem.x[2 * a + 1];
       const double part = limit > 0 ? std::clamp(force / limit, -1.0, 1.0) : 0;
       const double limit_of_master = problem.place[m].limit;
-      // Beside a master that nothing presses none of them is asked to hold anything.
+      // Nothing presses any of them where nothing presses the master.
       const double of_master = limit_of_master > 0 ? std::copysign(limit / limit_of_master, slide.ratios[n]) : 0;
       tie(a, points_[active_[a]].mu_static * part, holds ? static_cast<int>(active_[m]) : -1, of_master);
     }
@@ -59,7 +60,10 @@ bool ContactSwitch::holds_below_limits(const ContactProblem& problem, const std:
 void ContactSwitch::share_or_leave(double t, std::span<const double> qd, const std::vector<ContactState>& states,
                                    const Cause& cause, const ContactLoads& loads, ContactProblem& problem) {
   const auto is_tied = [&](std::size_t k) { return points_[k].kind == ContactKind::joint && states[k].tied; };
-  if (cause.leaves == 0 || std::none_of(active_.begin(), active_.end(), is_tied)) return;
+  // Of a contact that reaches its limit another share of the joints changes nothing.
+  if (cause.leaves == 0 || points_[at(cause.place)].kind != ContactKind::joint ||
+      std::none_of(active_.begin(), active_.end(), is_tied))
+    return;
   Cause stays = cause;
   stays.leaves = 0;
   ContactProblem shared(active_.size());

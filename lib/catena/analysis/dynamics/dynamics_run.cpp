@@ -221,6 +221,11 @@ Report Dynamics::step(RowObserver& observer) {
   if (work_.account && options_.step == 0 && under_way_.all_is_driven && under_way_.integrator->rate() > 0 &&
       (!evaluator_.laws().empty() || under_way_.motion->switches().has_cables()))
     reach = std::min(reach, t_ + thresholds::driven_stretch / under_way_.integrator->rate());
+  // Of where the step begins: its end may lie beyond an instant that ends what its forces are those of.
+  if (attached_.contacts) {
+    const std::span<const double> qd = under_way_.integrator->state().subspan(q_.size(), q_.size());
+    attached_.contacts->know_speed(fastest(evaluator_, qd));
+  }
   if (!under_way_.integrator->advance(reach)) return stuck();
   const double before = t_;
   t_ = under_way_.integrator->time();

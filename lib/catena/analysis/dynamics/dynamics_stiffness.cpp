@@ -33,7 +33,6 @@ double Dynamics::try_method(IntegrationMethod method, int steps, double limit) {
   std::vector<double> turned(q_.size(), 0.0);
   evaluator_.add_turns(turned);
   const std::vector<CurvePlace> places = evaluator_.curve_places();
-  const double speed = attached_.contacts ? attached_.contacts->speed() : 0;
   const std::unique_ptr<Integrator> trial = make_integrator(*under_way_.motion, run_.grid.last());
   trial->remember(under_way_.integrator->memory());
   double length = 0;
@@ -51,7 +50,6 @@ double Dynamics::try_method(IntegrationMethod method, int steps, double limit) {
   evaluator_.forget_turns();
   evaluator_.take_turns(turned);
   evaluator_.go_to_curve_places(places);
-  if (attached_.contacts) attached_.contacts->set_speed(speed);
   return length;
 }
 

@@ -56,6 +56,7 @@ std::optional<double> EventWatch::locate(std::size_t k, double before, double af
     const double least = 2 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), std::abs(b));
     const double width = b - a;
     if (width <= 2 * least) break;
+    if (!std::isfinite(part)) part = 0.5;  // a value has a pole there
     part = std::clamp(part, std::min(0.5, least / width), std::max(0.5, 1 - least / width));
     const double t = newest_is_after ? b - part * width : a + part * width;
     const double f = watched(k, t, state_at);

@@ -27,9 +27,9 @@ struct WorkSoFar {
 
 /// Quantities that an integrator has observed along the motion.
 struct IntegratorMemory {
-  double step = 0;                                ///< proposed for the next one, s
-  double rate = 0, root_energy = 0, radians = 0;  ///< see ErrorScale
-  double usual_ratio = 1e-300;                    ///< largest pivot ratio so far
+  double step = 0;                                                   ///< proposed for the next one, s
+  double rate = 0, root_energy = 0, root_of_start = 0, radians = 0;  ///< see ErrorScale
+  double usual_ratio = 1e-300;                                       ///< largest pivot ratio so far
 };
 
 /// Record of an event: `event` its place in the list, `row` the number of the row given at that instant, both from 0.

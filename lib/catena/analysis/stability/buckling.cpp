@@ -13,6 +13,7 @@
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/analysis/run/watched_elements.hpp"
+#include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/analysis/statics/solvers/static_active_set.hpp"
@@ -57,6 +58,14 @@ Report Buckling::not_stable() const {
           fmt::format("the equilibrium is not stable at the present value {:.6g} of the parameter; begin "
                       "with a smaller load",
                       options_.present),
+          {}};
+}
+
+Report Buckling::neutral(int count, const std::vector<std::string>& bodies) {
+  return {Status::refused,
+          fmt::format("the equilibrium is neutral at the present value of the parameter: nothing resists {}; hold them "
+                      "first",
+                      describe_free_motions(count, bodies)),
           {}};
 }
 

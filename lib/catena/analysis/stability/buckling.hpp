@@ -107,6 +107,8 @@ class Buckling {
   Report find_without_energy(BucklingReport& report, const std::function<bool()>& go_on);
   void find_errors(BucklingReport& report);
   Report not_stable() const;
+  /// As many motions that nothing resists at the present value.
+  static Report neutral(int count, const std::vector<std::string>& bodies);
   /// Loads by the difference of K between p0 and p0 + step: those of its `count` largest effects, in size or by value.
   Report find_with(double step, int count, bool by_value, std::vector<Load>& loads, double& effect,
                    const std::function<bool()>& go_on);

@@ -102,14 +102,8 @@ class Buckling::CirculatorySearch {
     Report outcome = spectrum(0, present_);
     if (!outcome.ok()) return outcome;
     if (present_.negative > 0 || (sees_flutter_ && present_.pairs > 0)) return buckling_.not_stable();
-    if (present_.neutral > 0) {
-      return {Status::refused,
-              fmt::format("the equilibrium is neutral at the present value of the parameter: nothing resists {}; hold "
-                          "them first",
-                          describe_free_motions(present_.neutral,
-                                                free_bodies_of(buckling_.system_, buckling_.point_.lambda, present_))),
-              {}};
-    }
+    if (present_.neutral > 0)
+      return Buckling::neutral(present_.neutral, free_bodies_of(buckling_.system_, buckling_.point_.lambda, present_));
     return {};
   }
 

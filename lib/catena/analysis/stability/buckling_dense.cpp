@@ -64,13 +64,7 @@ class Buckling::Spectrum {
         return buckling_.not_stable();
       }
     }
-    if (!free.empty()) {
-      return {Status::refused,
-              fmt::format("the equilibrium is neutral at the present value of the parameter: nothing resists {}; hold "
-                          "them first",
-                          describe_free_motions(static_cast<int>(free.size()), names_of_moving(system, lambda, free))),
-              {}};
-    }
+    if (!free.empty()) return Buckling::neutral(static_cast<int>(free.size()), names_of_moving(system, lambda, free));
     rounding_ = stiffness_rounding * solver.eigenvalues()[f - 1] / solver.eigenvalues()[0];
     metric_ = solver.eigenvectors() * solver.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal();
     return {};

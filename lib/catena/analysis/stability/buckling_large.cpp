@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "catena/analysis/run/thresholds.hpp"
+#include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/stability/buckling.hpp"
 #include "catena/analysis/stability/load_search.hpp"
@@ -84,6 +85,7 @@ Report Buckling::find_with(double step, int count, bool by_value, std::vector<Lo
   const StiffnessFloor floor = floor_under_load();
   if (!path_.factorize(point_)) return not_stable();
   if (const auto stability = path_.stability(); !stability || stability->negative > 0) return not_stable();
+  const StiffnessFloor own(system_, point_.lambda, 0);
   BucklingOperator op(system_, other);
   Lanczos lanczos(op);
   const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count, by_value); };
@@ -95,6 +97,12 @@ Report Buckling::find_with(double step, int count, bool by_value, std::vector<Lo
             fmt::format("{} loads did not settle within {} steps of Lanczos' method; ask for fewer", count, most),
             {}};
   }
+  // The metric is K0: what it cannot tell from rounding in a shape is a part of one.
+  std::vector<std::vector<double>> free;
+  for (int k : largest_ones(lanczos.theta(), std::min(count, static_cast<int>(lanczos.theta().size())), by_value)) {
+    if (own(lanczos.vector(k)) >= 1) free.push_back(lanczos.vector(k));
+  }
+  if (!free.empty()) return neutral(static_cast<int>(free.size()), names_of_moving(system_, point_.lambda, free));
   effect = 0;
   const int found = std::min(count, static_cast<int>(lanczos.theta().size()));
   for (int k : largest_ones(lanczos.theta(), found, by_value)) {

@@ -41,6 +41,8 @@ class ContactProblem {
     int head = -1;      ///< of a rope's grip: the rope's place, before it
     double growth = 1;  ///< of a rope's grip: g = e^E
   };
+  /// Places of which all states are tried: four each, 4096 choices, some 20 us each.
+  static constexpr std::size_t most_searched = 6;
   enum class State : unsigned char { open, slides, sticks };
 
   explicit ContactProblem(std::size_t places)
@@ -87,6 +89,9 @@ class ContactProblem {
   bool depends(std::size_t row, const std::vector<std::size_t>& others) const;
   /// x that goes with the present states, whatever its limits; what slides under a known force keeps its own.
   void solve_states();
+  /// Whether x goes with the present states, and what sticks holds no more than it can; of what presses by itself
+  /// nothing is asked.
+  bool fits_states() const { return keeps_states() && keeps_limits(); }
 
   std::vector<Place> place;
   std::vector<double> b;

@@ -19,9 +19,6 @@
 namespace catena {
 namespace {
 
-// Four states each: 4096 choices, some 20 us each.
-constexpr std::size_t most_searched = 6;
-
 /// The entries of a vector, or of a matrix column by column.
 template <class M>
 auto entries(M& of) {
@@ -109,7 +106,7 @@ bool ContactProblem::try_states() {
     x[2 * of.place + 1] += of.along * sizes(c);
   }
   if (!keeps_states()) return false;
-  share_by_limits(*this);
+  LimitShares().share(*this);
   return keeps_limits();
 }
 
@@ -135,8 +132,8 @@ bool ContactProblem::keeps_states() const {
 // Whether joints that stick hold no more than they can.
 bool ContactProblem::keeps_limits() const {
   for (std::size_t k = 0; k < place.size(); ++k) {
-    if (state[k] == State::sticks && !place[k].has_normal && x[2 * k + 1] > place[k].limit * (1 + rounding_of_sums))
-      return false;
+    const double most = place[k].limit * (1 + rounding_of_sums);
+    if (state[k] == State::sticks && !place[k].has_normal && std::abs(x[2 * k + 1]) > most) return false;
   }
   return true;
 }

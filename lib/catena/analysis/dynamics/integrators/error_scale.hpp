@@ -59,10 +59,13 @@ class ErrorScale {
   }
 
   /// Of the motion so far, but for the step.
-  IntegratorMemory memory() const { return {.rate = rate_, .root_energy = root_energy_, .radians = radians_}; }
+  IntegratorMemory memory() const {
+    return {.rate = rate_, .root_energy = root_energy_, .root_of_start = root_of_start_, .radians = radians_};
+  }
   void remember(const IntegratorMemory& memory) {
     rate_ = memory.rate;
     root_energy_ = memory.root_energy;
+    root_of_start_ = memory.root_of_start;
     radians_ = memory.radians;
   }
 

@@ -65,6 +65,13 @@ bool PhaseEquations::factorize(double t, Side side, std::span<const DesignScalar
   });
 }
 
+bool PhaseEquations::ties_joints() const {
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    if (states_[k].tied && contacts_.points[k].kind == ContactKind::joint) return true;
+  }
+  return false;
+}
+
 PlaceLaw PhaseEquations::law(const DesignPlace& place, std::size_t k) const {
   const ContactPoint& point = contacts_.points[k];
   PlaceLaw law{point, states_[k], place, gap_row(k), slide_row(k)};
@@ -107,21 +114,19 @@ PhaseEquations::EndRate PhaseEquations::rate_of_end(const DesignMechanism& mecha
         {},
         fmt::format("at t = {:.9g} s places that hold each other, \"{}\" among them, give way: when has no derivative",
                     mechanism.time(), name())};
-  const auto is_tied = [&](const ContactState& state) {
-    return state.tied && point.kind == ContactKind::joint &&
-           (&state == &states_[watched.place] || state.master == static_cast<int>(watched.place));
-  };
-  if (watched.ends == PhaseEnd::slide && std::any_of(states_.begin(), states_.end(), is_tied))
+  const auto by_forces = [&]() -> EndRate {
+    if (!ties_joints()) return {};
     return {{},
-            fmt::format("at t = {:.9g} s friction of joints that hold the same, \"{}\" among them, reaches its limit: "
-                        "when has no derivative",
+            fmt::format("at t = {:.9g} s the force of \"{}\" ends a phase in which joints share friction that is not "
+                        "unique: when has no derivative",
                         mechanism.time(), name())};
+  };
   if (watched.ends == PhaseEnd::slide) {
-    if (states_[watched.place].direction == 0) return {};
+    if (states_[watched.place].direction == 0) return by_forces();
     return {mechanism.measure(point.slide).dd.v, {}};
   }
   const PlaceMotion now = motion(mechanism, watched.place);
-  if (!law(place, watched.place).ends_by_gap(now, watched.ends)) return {};
+  if (!law(place, watched.place).ends_by_gap(now, watched.ends)) return by_forces();
   const double part = point.turns ? 1 / evaluator_.length_scale() : 1;
   if (std::abs(now.gap_rate.v) > no_speed * part * speed) return {now.gap_rate.v, {}};
   return {{},

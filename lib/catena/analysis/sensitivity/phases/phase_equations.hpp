@@ -65,6 +65,8 @@ class PhaseEquations {
                       double speed) const;
   /// Whether exact friction sticks at a place.
   bool sticks(std::size_t place) const;
+  /// Whether joints share friction that is not unique (same_slides.hpp): how has no derivative.
+  bool ties_joints() const;
   /// The row of a place's gap, of its slide; -1: none.
   int gap_row(std::size_t place) const;
   int slide_row(std::size_t place) const;

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "catena/analysis/balance/descent_rules.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
@@ -39,7 +41,13 @@ bool falls_for_ever(StaticSystem& system, std::span<const double> q, std::span<c
         system.phi_norm() <= std::max({descent::restored, 10 * system.rounding_change(), neutral_part * way * way}) &&
         std::abs(energy - system.energy() - force * s) <= bend * force * s + across * s * s / 2;
     system.all_gaps(gaps);
-    endless = endless && std::all_of(gaps.begin(), gaps.end(), [](double gap) { return gap >= 0; });
+    // A closed gap along which the line leads is rounding of places there.
+    const double rounding =
+        std::max({descent::restored, 10 * system.rounding_change(), thresholds::few_roundings * way});
+    for (std::size_t k = 0; endless && k < gaps.size(); ++k) {
+      const bool angle = system.plan().row_is_angle[at(system.plan().gap_rows[k])] != 0;
+      endless = gaps[k] >= -rounding * (angle ? 1 : system.length());
+    }
   }
   system.evaluator().go_to_curve_places(places);
   system.move_to(q);
