@@ -393,6 +393,7 @@ TEST(Bench, CtrlCKeepsTheRowsSoFar) {
   const std::string document = folder / "rows.json";
   const ProgramResult result = run_catena({"bench", "kernels", "-q", "--budget", "1", "--json", document},
                                           {.standard_output = {}, .during = [](int process) {
+                                             wait_for_handler(process, SIGINT);
                                              std::this_thread::sleep_for(std::chrono::milliseconds(500));
                                              ::kill(process, SIGINT);
                                            }});

@@ -62,6 +62,7 @@ double seconds_to_end(const std::vector<std::string>& arguments, int signal, int
   std::chrono::steady_clock::time_point sent;
   ProgramOptions options;
   options.during = [&](int process) {
+    wait_for_handler(process, signal);
     std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
     ::kill(process, signal);
     sent = std::chrono::steady_clock::now();

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <fstream>
+#include <string>
 #include <thread>
 
 #include "results/temporary_folder.hpp"
@@ -44,6 +45,21 @@ ProgramResult run_catena(const std::vector<std::string>& arguments, const Progra
   if (options.standard_output.empty()) result.out = read_file(out);
   result.err = read_file(err);
   return result;
+}
+
+void wait_for_handler(int process, int signal) {
+  const std::string path = "/proc/" + std::to_string(process) + "/status", word = "SigCgt:";
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (std::chrono::steady_clock::now() < deadline) {
+    std::ifstream status(path);
+    std::string line;
+    while (std::getline(status, line) && !line.starts_with(word)) {
+    }
+    if (!line.starts_with(word)) return;
+    const unsigned long long caught = std::stoull(line.substr(word.size()), nullptr, 16);
+    if (caught >> (signal - 1) & 1) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 }
 
 std::string write_scene(const std::string& path, const std::string& text) {

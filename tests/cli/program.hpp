@@ -21,6 +21,9 @@ struct ProgramOptions {
 /// Runs `catena arguments...` and waits for it; after 60 s it is killed.
 ProgramResult run_catena(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
 
+/// Waits until a process handles a signal, at most 30 s: a program that is slow to start is not signalled before.
+void wait_for_handler(int process, int signal);
+
 /// Writes a scene into `path` and returns the path.
 std::string write_scene(const std::string& path, const std::string& text);
 

@@ -197,6 +197,7 @@ TEST_F(Run, CtrlCKeepsTheRowsSoFar) {
   const std::string target = folder_ / "results";
   const ProgramResult result =
       run_catena({"run", path, "-o", target, "-q"}, {.standard_output = {}, .during = [](int process) {
+                                                       wait_for_handler(process, SIGINT);
                                                        std::this_thread::sleep_for(std::chrono::milliseconds(700));
                                                        ::kill(process, SIGINT);
                                                      }});
@@ -219,6 +220,7 @@ TEST_F(Run, CtrlCIsNoticedBetweenRows) {
     std::chrono::steady_clock::time_point signalled;
     const ProgramResult result =
         run_catena({"run", path, "--json"}, {.standard_output = {}, .during = [&](int process) {
+                                               wait_for_handler(process, SIGINT);
                                                std::this_thread::sleep_for(std::chrono::milliseconds(400));
                                                signalled = std::chrono::steady_clock::now();
                                                ::kill(process, SIGINT);

@@ -100,22 +100,29 @@ TEST(JointsAtRest, OfTwoFreedomsHoldBelowTheirLimits) {
   }
 }
 
-// How slides share friction changes with their coefficients, which is not differentiated: no derivative of it.
+// How slides share friction changes with their coefficients, which is not differentiated: no derivative of it. Those of
+// a slide beside them, which slows down from 5 m/s by its own friction, are there.
 TEST(JointsAtRest, SharesHaveNoDerivatives) {
   const TextRun run =
       run_text(R"({"catena": 1, "parameters": {"m": 0.3, "n": 0.2}, "bodies": {"a": {"mass": 1, "inertia": 1},
-    "b": {"mass": 1, "inertia": 1, "position": [0, 2]}}, "constraints": [
+    "b": {"mass": 1, "inertia": 1, "position": [0, 2]},
+    "c": {"mass": 1, "inertia": 1, "position": [0, 4], "velocity": [5, 0]}}, "constraints": [
       {"type": "translational", "name": "A", "i": "ground", "j": "a", "axis_i": [1, 0]},
       {"type": "translational", "name": "B", "i": ["ground", [0, 2]], "j": "b", "axis_i": [1, 0]},
+      {"type": "translational", "name": "C", "i": ["ground", [0, 4]], "j": "c", "axis_i": [1, 0]},
       {"type": "relative_x", "i": "a", "j": "b", "value": 0}],
     "forces": [{"type": "friction", "name": "f", "joint": "A", "mu": "m"}, {"type": "friction", "joint": "B", "mu": "n"},
+      {"type": "friction", "name": "h", "joint": "C", "mu": "m"}, {"type": "point_force", "i": "c", "force": [0, -10]},
       {"type": "point_force", "i": "a", "force": [3, -10]}, {"type": "point_force", "i": "b", "force": [0, -10]}],
-    "outputs": ["a.x", "f.friction"], "analyses": [{"type": "sensitivity", "parameters": ["m", "n"], "mode": "forward",
+    "outputs": ["a.x", "f.friction", "c.vx", "h.friction"], "analyses": [{"type": "sensitivity", "parameters": ["m", "n"], "mode": "forward",
       "of": {"type": "dynamics", "until": 1}}]})");
   ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
   EXPECT_NEAR(run.last("f.friction"), -1.8, 1e-9);
   EXPECT_EQ(run.last("d(a.x)/d(n)"), 0);
   EXPECT_TRUE(std::isnan(run.last("d(f.friction)/d(n)")));
+  EXPECT_NEAR(run.last("c.vx"), 2, 1e-9);
+  EXPECT_NEAR(run.last("d(c.vx)/d(m)"), -10, 1e-8);
+  EXPECT_NEAR(run.last("d(h.friction)/d(m)"), -10, 1e-8);
 }
 
 }  // namespace

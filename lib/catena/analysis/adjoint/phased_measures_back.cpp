@@ -40,8 +40,10 @@ bool PhasedMeasures::add_slopes(const Point& point, const StateSlopes& slopes, W
   Vector more(2 * n_, 0.0);
   std::copy(slopes.by_q.begin(), slopes.by_q.end(), more.begin());
   std::copy(slopes.by_qd.begin(), slopes.by_qd.end(), more.begin() + static_cast<std::ptrdiff_t>(n_));
-  if (is_any(slopes.by_lambda) && equations_->ties_joints())
-    return lose(point.t, "joints share friction that is not unique");
+  for (std::size_t r = 0; r < slopes.by_lambda.size(); ++r) {
+    if (slopes.by_lambda[r] != 0 && equations_->shares_row(static_cast<int>(r)))
+      return lose(point.t, "a measure looks at a reaction while joints share friction that is not unique");
+  }
   if (is_any(slopes.by_qdd) || is_any(slopes.by_lambda)) {
     if (!transpose_->weigh(slopes.by_qdd, slopes.by_lambda)) return singular_at(point.t);
     transpose_->add_by_state(point, std::span(more).first(n_), std::span(more).subspan(n_));

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/analysis/contact/problem/same_slides.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
@@ -81,11 +82,13 @@ bool ContactSwitch::settle_by_states(std::span<const double> qd, const ContactLo
     take_choice(number, tried);
     Pressing pressing{.change = 1, .size = 0};
     // With given states an error of which a part 0.9 is left in each of them is rounding after a tenth of the rounds.
+    LimitShares shares;
     for (int round = 0; round < most_settling / 10 && !pressing.is_settled(); ++round) {
       for (std::size_t a = 0; a < tried.place.size(); ++a) {
         if (tried.state[a] == JointState::slides) tried.x[2 * a + 1] = -tried.direction[a] * tried.place[a].kinetic;
       }
       tried.solve_states();
+      shares.share(tried);
       pressing = press(qd, loads, tried);
     }
     if (!pressing.is_settled() || !tried.fits_states()) continue;

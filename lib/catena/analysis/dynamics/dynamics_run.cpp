@@ -221,7 +221,7 @@ Report Dynamics::step(RowObserver& observer) {
   if (work_.account && options_.step == 0 && under_way_.all_is_driven && under_way_.integrator->rate() > 0 &&
       (!evaluator_.laws().empty() || under_way_.motion->switches().has_cables()))
     reach = std::min(reach, t_ + thresholds::driven_stretch / under_way_.integrator->rate());
-  // Of where the step begins: its end may lie beyond an instant that ends what its forces are those of.
+  // The speed at the beginning of the step: its end may lie beyond an event after which other forces act.
   if (attached_.contacts) {
     const std::span<const double> qd = under_way_.integrator->state().subspan(q_.size(), q_.size());
     attached_.contacts->know_speed(fastest(evaluator_, qd));
@@ -270,6 +270,7 @@ Report Dynamics::start_anew() {
     if (attached_.follower) attached_.follower->jump();
   }
   run_.smooth_since = t_;
+  if (attached_.contacts) attached_.contacts->know_speed(fastest(evaluator_, before));
   if (attached_.contacts && attached_.contacts->holds() && jump > no_speed * attached_.contacts->speed()) {
     std::copy(before.begin(), before.end(), qd.begin());
     run_.jumped = true;

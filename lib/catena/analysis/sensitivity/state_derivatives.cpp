@@ -73,6 +73,14 @@ void StateDerivatives::leave_out_reactions(Group& group) {
   for (DesignScalar& multiplier : group.lambda) multiplier.d.fill(std::numeric_limits<double>::quiet_NaN());
 }
 
+void StateDerivatives::leave_out_shares(Group& group, std::span<const char> rows) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (rows[r]) group.lambda[r].d.fill(std::numeric_limits<double>::quiet_NaN());
+  }
+  if (!rows.empty() && lack_.empty())
+    lack_ = "reactions and friction have no derivative while joints share friction that is not unique";
+}
+
 void StateDerivatives::leave_out_parameter(Group& group, std::size_t p, int row) {
   lack_ = describe_contradiction(evaluator_.model(), plan(), row);
   for (DesignScalar& place : group.q) place.d[p] = std::numeric_limits<double>::quiet_NaN();

@@ -120,6 +120,8 @@ class StateDerivatives {
   }
   /// Multipliers of rows that depend on each other: which of them are shown depends on the parameters.
   void leave_out_reactions(Group& group);
+  /// Multipliers of rows, marked by 1, in whose mechanisms joints share friction.
+  void leave_out_shares(Group& group, std::span<const char> rows);
   /// A parameter that moves this row alone of several that depend on each other: no state has a derivative by it.
   void leave_out_parameter(Group& group, std::size_t p, int row);
   /// Phi_q at the evaluator's configuration, size entries.

@@ -48,7 +48,7 @@ std::optional<std::vector<double>> least_forces(const ContactProblem& problem, c
   const Eigen::VectorXd least = root.cwiseProduct(scaled);
   const Eigen::VectorXd missing = response * least - effect;
   for (Eigen::Index r = 0; r < size; ++r) {
-    const double terms = (response.row(r).cwiseAbs() * (least + held).cwiseAbs())(0);
+    const double terms = response.row(r).cwiseAbs().dot((least.cwiseAbs() + held.cwiseAbs()).transpose());
     if (!(std::abs(missing(r)) <= ContactProblem::rounding_of_sums * terms)) return {};
   }
   return std::vector<double>(least.begin(), least.end());

@@ -40,6 +40,35 @@ void PhaseEquations::hold(const std::vector<int>& released, std::vector<ContactS
   }
   system_ = &systems_.try_emplace(left_out, evaluator_.shared_plan(), SaddleBlock::diagonal).first->second;
   system_->leave_out(std::move(left_out));
+  find_shared_rows();
+}
+
+// Rows of the mechanisms in which joints share friction, but for those of forces that the state alone decides.
+void PhaseEquations::find_shared_rows() {
+  shared_.clear();
+  std::vector<char> tied(at(plan().rows), 0), by_state(tied), shares(at(plan().islands), 0);
+  bool any = false;
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const ContactKind kind = contacts_.points[k].kind;
+    const bool ties = states_[k].tied && kind == ContactKind::joint;
+    if (ties) tied[at(slide_row(k))] = 1;
+    any = any || ties;
+    if (kind != ContactKind::compliant) continue;
+    by_state[at(gap_row(k))] = 1;
+    if (const int row = slide_row(k); row >= 0) by_state[at(row)] = 1;
+  }
+  if (!any) return;
+  shared_.assign(at(plan().rows), 0);
+  for (const bool marks : {false, true}) {
+    for (int c = 0; c < plan().columns; ++c) {
+      char& mechanism = shares[at(plan().island[at(plan().coordinate[at(c)] / 3)])];
+      for (int n = plan().jacobian.column_start[at(c)]; n < plan().jacobian.column_start[at(c) + 1]; ++n) {
+        const auto row = at(plan().jacobian.row_index[at(n)]);
+        if (!marks && tied[row]) mechanism = 1;
+        if (marks && mechanism && !by_state[row]) shared_[row] = 1;
+      }
+    }
+  }
 }
 
 bool PhaseEquations::sticks(std::size_t k) const { return law({}, k).sticks(); }
@@ -63,13 +92,6 @@ bool PhaseEquations::factorize(double t, Side side, std::span<const DesignScalar
   return system_->factorize(phi_q, [&] {
     for (int c = 0; c < 3 * plan().moving; ++c) system_->add_diagonal(c, masses.mass(c).v);
   });
-}
-
-bool PhaseEquations::ties_joints() const {
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (states_[k].tied && contacts_.points[k].kind == ContactKind::joint) return true;
-  }
-  return false;
 }
 
 PlaceLaw PhaseEquations::law(const DesignPlace& place, std::size_t k) const {
@@ -115,7 +137,8 @@ PhaseEquations::EndRate PhaseEquations::rate_of_end(const DesignMechanism& mecha
         fmt::format("at t = {:.9g} s places that hold each other, \"{}\" among them, give way: when has no derivative",
                     mechanism.time(), name())};
   const auto by_forces = [&]() -> EndRate {
-    if (!ties_joints()) return {};
+    const int row = watched.ends == PhaseEnd::slide ? slide_row(watched.place) : gap_row(watched.place);
+    if (row < 0 || !shares_row(row)) return {};
     return {{},
             fmt::format("at t = {:.9g} s the force of \"{}\" ends a phase in which joints share friction that is not "
                         "unique: when has no derivative",

@@ -65,8 +65,10 @@ class PhaseEquations {
                       double speed) const;
   /// Whether exact friction sticks at a place.
   bool sticks(std::size_t place) const;
-  /// Whether joints share friction that is not unique (same_slides.hpp): how has no derivative.
-  bool ties_joints() const;
+  /// Rows of mechanisms in which joints share friction that is not unique (same_slides.hpp): how has no derivative.
+  /// Empty where none do.
+  std::span<const char> shared_rows() const { return shared_; }
+  bool shares_row(int row) const { return !shared_.empty() && shared_[static_cast<std::size_t>(row)] != 0; }
   /// The row of a place's gap, of its slide; -1: none.
   int gap_row(std::size_t place) const;
   int slide_row(std::size_t place) const;
@@ -124,6 +126,7 @@ class PhaseEquations {
   void find_sides(std::span<const DesignScalar> qd, std::span<const DesignScalar> lambda);
   void add_loads(std::span<const double> lambda, std::span<double> f);
   bool respond(std::span<const Coupled> coupled);
+  void find_shared_rows();
   bool solve_values(const Design& design, std::span<const Coupled> coupled);
   void add_slopes(const Design& design, std::span<const Coupled> coupled, std::span<DesignScalar> x,
                   std::span<DesignScalar> lambda);
@@ -133,6 +136,7 @@ class PhaseEquations {
   const ContactModel& contacts_;
   std::vector<ContactState> states_;
   std::vector<char> held_;                            // by row
+  std::vector<char> shared_;                          // by row; see shared_rows()
   std::map<std::vector<int>, SaddleSystem> systems_;  // by the rows that are left out
   SaddleSystem* system_ = nullptr;
   std::vector<double> jacobian_, values_, columns_, f_, b_;

@@ -310,10 +310,9 @@ bool PhasedDerivatives::take_state(std::size_t k, const Snapshot& snapshot, Side
   std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(n_), n_, group.qd.begin());
   if (!slope(k, snapshot.t, side, y, stage_)) return singular(snapshot.t);
   // Shares of friction are found with the values of the parameters alone.
-  const bool tied = equations_->ties_joints();
-  if (tied) leave_out_reactions(group);
+  leave_out_shares(group, equations_->shared_rows());
   equations_->contacts(design(k), group.lambda, group.contacts);
-  if (!tied && !equations_->dependent_rows().empty()) leave_out_reactions(group);
+  if (!equations_->dependent_rows().empty()) leave_out_reactions(group);
   return true;
 }
 
